@@ -20,8 +20,8 @@ use crate::ctype::{
     CType, Char, File, GuestType, Long, Role, SizeT, UnsignedLong, ValueClass, Void, Volatile,
 };
 use crate::function::{
-    ALL, Attributes, AxisNumber, BitNumber, FileName, NOT_B3, Polled, PrintFormat, ScanFormat, ThreadNumber,
-    Within,
+    ALL, Attributes, AxisNumber, BitNumber, BoundedInt, FileName, NOT_B3, PolledState, PrintFormat,
+    ScanFormat, ThreadNumber,
 };
 use crate::ids::Cycles;
 use crate::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
@@ -274,7 +274,7 @@ const fn by_address() -> [Option<NonZeroU16>; SLOTS] {
 ///   [`function`](crate::function) names the role of the argument as well: `AxisNumber`, `BitNumber`, `PrintFormat`.
 /// - The cost is in cycles of 5 ns, waiting not included.
 /// - The origin is `header`, `firmware` or `library`, see [`Origin`](crate::firmware::Origin).
-/// - The attributes are the methods of [`function`](crate::function): `waits("until …")`, `polls(Polled::Bit)`,
+/// - The attributes are the methods of [`function`](crate::function): `waits("until …")`, `polls(PolledState::Bit)`,
 ///   `drives_axis`, `reads_bit`, `writes_bit`, `pure`, `stack(bytes)`, `changes(A, B)`.
 /// - The position in the table is the function's number. Library rows have ascending addresses.
 ///
@@ -311,15 +311,15 @@ macro_rules! for_each_firmware_fn {
                 writes_bit;
             /// State of a bit, 0 or 1: an output's own state, an input's pin.
             io::read_bit = ReadBit(bit: BitNumber) -> i32, at 0x1001_2214, cost 78, header,
-                polls(Polled::Bit), reads_bit;
+                polls(PolledState::Bit), reads_bit;
             /// Analog input `ch` in counts, -2048 to 2047, as the macro ADC(ch) gives it.
             io::read_adc = ReadADC(ch: i32) -> i32, at 0x8001_C3E0, cost 19, header;
             /// Drives PWM channel `ch` in locked antiphase, `v` within ±MAX_PWM_VALUE.
-            io::write_pwm = WritePWM(ch: i32, v: Within<MAX_PWM_VALUE>), at 0x1000_1CB4, cost 101, header;
+            io::write_pwm = WritePWM(ch: i32, v: BoundedInt<MAX_PWM_VALUE>), at 0x1000_1CB4, cost 101, header;
             /// Drives PWM channel `ch` in recirculate mode, `v` within ±MAX_PWMR_VALUE.
-            io::write_pwmr = WritePWMR(ch: i32, v: Within<MAX_PWMR_VALUE>), at 0x1000_1B24, cost 97, header;
+            io::write_pwmr = WritePWMR(ch: i32, v: BoundedInt<MAX_PWMR_VALUE>), at 0x1000_1B24, cost 97, header;
             /// Commands the current loop of PWM channel `ch` (SnapAmp), `v` within ±MAX_PWMC_VALUE.
-            io::write_pwmc = WritePWMC(ch: i32, v: Within<MAX_PWMC_VALUE>), at 0x1000_1BD8, cost 17, header;
+            io::write_pwmc = WritePWMC(ch: i32, v: BoundedInt<MAX_PWMC_VALUE>), at 0x1000_1BD8, cost 17, header;
 
             // ---- motion: single axes: enabling, independent moves, commutation ------------------------
             /// Turns an axis on where it is: the destination becomes the measured position.
@@ -358,11 +358,11 @@ macro_rules! for_each_firmware_fn {
                 at 0x8001_020C, cost 10426, header;
             /// 1 when no profile is running, 0 while one is, -1 when the axis is disabled.
             motion::check_done = CheckDone(ch: AxisNumber) -> i32, at 0x1000_CA74, cost 25, header,
-                polls(Polled::Motion);
+                polls(PolledState::Motion);
             /// CheckDone over all axes of the coordinate system: 1 all finished, 0 some moving, -1 one
             /// disabled.
             motion::check_done_xyzabc = CheckDoneXYZABC() -> i32, at 0x1000_CAC8, cost 313, header,
-                polls(Polled::Path);
+                polls(PolledState::Path);
             /// Starts the profile prepared in the coefficient list of axis `ch`.
             motion::start_move = StartMove(ch: AxisNumber), at 0x8002_13F4, cost 22, header, drives_axis;
             /// Drops the running profile; the destination stays where it is.
@@ -407,7 +407,7 @@ macro_rules! for_each_firmware_fn {
             ), at 0x8002_5A74, cost 79, header;
             /// Buffered motion: 1 finished, 0 running, -1 an axis of the coordinate system is disabled.
             coord::check_done_buf = CheckDoneBuf() -> i32, at 0x1000_CDAC, cost 206, header,
-                polls(Polled::Path);
+                polls(PolledState::Path);
             /// Feedhold: brings the coordinate system's axes to a controlled stop. See CS0_StoppingState.
             coord::stop_coordinated_motion = StopCoordinatedMotion(), at 0x8001_C6C4, cost 340, header;
             /// Releases a feedhold and continues the interrupted motion.
@@ -453,16 +453,16 @@ macro_rules! for_each_firmware_fn {
 
             // ---- time: time and waiting ---------------------------------------------------------------
             /// Seconds since power-up.
-            time::time_sec = Time_sec() -> f64, at 0x1001_3400, cost 80, header, polls(Polled::Time);
+            time::time_sec = Time_sec() -> f64, at 0x1001_3400, cost 80, header, polls(PolledState::Time);
             /// Waits until Time_sec() reaches `time_sec`; other threads keep running.
             time::wait_until = WaitUntil(time_sec: f64), at 0x1000_26C4, cost 106, header,
-                waits("until that time"), polls(Polled::Time), after_time(63, 1);
+                waits("until that time"), polls(PolledState::Time), after_time(63, 1);
             /// Waits `sec` seconds; other threads keep running.
             time::delay_sec = Delay_sec(sec: f64), at 0x1000_748C, cost 201, header,
-                waits("until the time has passed"), polls(Polled::Time), after_time(63, 1);
+                waits("until the time has passed"), polls(PolledState::Time), after_time(63, 1);
             /// Waits for the thread's next time slice and returns the time in seconds.
             time::wait_next_time_slice = WaitNextTimeSlice() -> f64, at 0x1000_1180, cost 113, header,
-                waits("until the next slice of the thread"), polls(Polled::Time), after_slice(69, 1);
+                waits("until the next slice of the thread"), polls(PolledState::Time), after_slice(69, 1);
 
             // ---- thread: starting and stopping threads ------------------------------------------------
             /// Starts, or starts again, the program loaded for user thread 1 to 7.
@@ -477,7 +477,7 @@ macro_rules! for_each_firmware_fn {
             // ---- sync: locks and uninterruptible operations -------------------------------------------
             /// Takes `*mutex` for the calling thread; waits while another thread holds it.
             sync::mutex_lock = MutexLock(mutex: *mut i32), at 0x1001_2F20, cost 38, header,
-                waits("while another thread holds the lock"), polls(Polled::Lock);
+                waits("while another thread holds the lock"), polls(PolledState::Lock);
             /// Stores 0 in `*mutex`, whoever holds it.
             sync::mutex_unlock = MutexUnlock(mutex: *mut i32), at 0x1001_302C, cost 15, header;
             /// `*p |= mask`, uninterruptible.
@@ -559,7 +559,7 @@ macro_rules! for_each_firmware_fn {
             gather::trigger_gather = TriggerGather(), at 0x8002_12A0, cost 14, header;
             /// 1 when recording has reached its end, else 0.
             gather::check_done_gather = CheckDoneGather() -> i32, at 0x8002_1950, cost 16, header,
-                polls(Polled::Recording);
+                polls(PolledState::Recording);
 
             // ---- serial: the UART ---------------------------------------------------------------------
             /// Enables the UART pins and sets the divisor, one of the RS232_BAUD_ values. Takes about 2 ms.
@@ -935,9 +935,13 @@ mod tests {
             let first = row.params.first().map(|param| param.role);
             assert!(!row.attributes.drives_axis || first == Some(Role::Axis), "{}", row.name);
             assert!(row.attributes.bit_access.is_none() || first == Some(Role::Bit), "{}", row.name);
-            assert!(row.attributes.polls != Some(Polled::Bit) || first == Some(Role::Bit), "{}", row.name);
             assert!(
-                row.attributes.polls != Some(Polled::Motion) || first == Some(Role::Axis),
+                row.attributes.polls != Some(PolledState::Bit) || first == Some(Role::Bit),
+                "{}",
+                row.name
+            );
+            assert!(
+                row.attributes.polls != Some(PolledState::Motion) || first == Some(Role::Axis),
                 "{}",
                 row.name
             );

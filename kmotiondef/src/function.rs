@@ -35,9 +35,9 @@ roles! {
 
 /// `int`, from `-MOST` to `MOST`.
 #[derive(Debug)]
-pub enum Within<const MOST: i32> {}
+pub enum BoundedInt<const MOST: i32> {}
 
-impl<const MOST: i32> GuestType for Within<MOST> {
+impl<const MOST: i32> GuestType for BoundedInt<MOST> {
     const C_TYPE: CType = CType::Int;
     const SIZE: u32 = 4;
     const ALIGN: u32 = 4;
@@ -70,7 +70,7 @@ texts! {
 
 /// The state that a program polls when it calls a function again and again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Polled {
+pub enum PolledState {
     /// The time.
     Time,
     /// The bit that the first argument names.
@@ -126,7 +126,7 @@ pub struct Attributes {
     /// their row states.
     pub waits: Option<&'static str>,
     /// The state that a program polls with it.
-    pub polls: Option<Polled>,
+    pub polls: Option<PolledState>,
     /// True if it makes the axis of its first argument work.
     pub drives_axis: bool,
     /// The effect on the bit of its first argument.
@@ -164,7 +164,7 @@ impl Attributes {
     }
 
     /// Is called again and again by a program that waits for a state.
-    pub(crate) const fn polls(self, state: Polled) -> Self {
+    pub(crate) const fn polls(self, state: PolledState) -> Self {
         Self { polls: Some(state), ..self }
     }
 

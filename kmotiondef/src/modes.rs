@@ -135,7 +135,7 @@ modes! {
 
 /// The outputs that go to zero when an axis is switched off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AtRest {
+pub enum RestOutputs {
     /// Nothing: steps stay where they are.
     Nothing,
     /// The word of its first channel.
@@ -160,7 +160,7 @@ pub struct OutputTraits {
     /// Enabling keeps the destination, as the position is not that of the motor.
     pub keeps_dest: bool,
     /// The outputs that go to zero when the axis is switched off.
-    pub at_rest: AtRest,
+    pub at_rest: RestOutputs,
     /// Cycles of the servo interrupt for an enabled axis, as measured.
     pub cycles: i64,
 }
@@ -172,7 +172,7 @@ impl OutputTraits {
         has_generator: false,
         corrects_command: false,
         keeps_dest: false,
-        at_rest: AtRest::Nothing,
+        at_rest: RestOutputs::Nothing,
         cycles: 0,
     };
 }
@@ -187,20 +187,20 @@ impl OutputMode {
             Self::Microstep => OutputTraits {
                 is_open_loop: true,
                 keeps_dest: true,
-                at_rest: AtRest::Both,
+                at_rest: RestOutputs::Both,
                 cycles: 282,
                 ..LOOP
             },
-            Self::DcServo => OutputTraits { at_rest: AtRest::First, cycles: 299, ..LOOP },
-            Self::Brushless3Ph => OutputTraits { at_rest: AtRest::FirstAndNext, cycles: 429, ..LOOP },
-            Self::Brushless4Ph => OutputTraits { at_rest: AtRest::Both, cycles: 467, ..LOOP },
-            Self::DacServo => OutputTraits { at_rest: AtRest::Analog, cycles: 323, ..LOOP },
+            Self::DcServo => OutputTraits { at_rest: RestOutputs::First, cycles: 299, ..LOOP },
+            Self::Brushless3Ph => OutputTraits { at_rest: RestOutputs::FirstAndNext, cycles: 429, ..LOOP },
+            Self::Brushless4Ph => OutputTraits { at_rest: RestOutputs::Both, cycles: 467, ..LOOP },
+            Self::DacServo => OutputTraits { at_rest: RestOutputs::Analog, cycles: 323, ..LOOP },
             Self::StepDir => OutputTraits { is_open_loop: true, has_generator: true, cycles: 225, ..LOOP },
             Self::ClosedLoopStepDir => {
                 OutputTraits { has_generator: true, corrects_command: true, cycles: 429, ..LOOP }
             }
             Self::ClosedLoopMicrostep => {
-                OutputTraits { corrects_command: true, at_rest: AtRest::Both, cycles: 489, ..LOOP }
+                OutputTraits { corrects_command: true, at_rest: RestOutputs::Both, cycles: 489, ..LOOP }
             }
         }
     }

@@ -4,7 +4,7 @@ use crate::GuestAddr;
 
 /// The value of a variable or field at power-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Start {
+pub enum StartValue {
     /// Zeros.
     Zero,
     /// An integer.
@@ -34,7 +34,7 @@ pub enum Start {
 
 /// The power-ups at which the start value is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stored {
+pub enum StoreCondition {
     /// At every power-up.
     Always,
     /// Only when no user image has been flashed; otherwise what was flashed comes back.

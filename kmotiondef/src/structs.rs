@@ -9,8 +9,8 @@
 
 use crate::ctype::{CType, Char, GuestType, Void};
 use crate::place::Field;
-use crate::start::Start::{self, Double, Fields, Float, Int, PerAxis, Zero};
-use crate::start::Stored;
+use crate::start::StartValue::{self, Double, Fields, Float, Int, PerAxis, Zero};
+use crate::start::StoreCondition;
 
 /// A structure.
 #[derive(Clone, Copy, Debug)]
@@ -37,9 +37,9 @@ pub struct StructureField {
     /// Its size in bytes.
     pub size: u32,
     /// Its value at power-up.
-    pub start: Start,
+    pub start: StartValue,
     /// The power-ups at which it is stored.
-    pub stored: Stored,
+    pub stored: StoreCondition,
     /// Its meaning, with unit and range.
     pub doc: &'static str,
 }
@@ -55,9 +55,9 @@ const fn aligned(end: u32, align: u32) -> u32 {
 /// puts something else than zeros there, `…, at offset, starts value;` for a value stored at
 /// every power-up and `…, keeps value;` for one stored only when no user image has been flashed.
 macro_rules! guest_struct {
-    (@start) => { (Zero, Stored::UnlessFlashed) };
-    (@start starts $start:expr) => { ($start, Stored::Always) };
-    (@start keeps $start:expr) => { ($start, Stored::UnlessFlashed) };
+    (@start) => { (Zero, StoreCondition::UnlessFlashed) };
+    (@start starts $start:expr) => { ($start, StoreCondition::Always) };
+    (@start keeps $start:expr) => { ($start, StoreCondition::UnlessFlashed) };
     (
         $(#[$struct_doc:meta])+
         $rust:ident = $c:ident, size $size:literal, align $align:literal;

@@ -12,8 +12,8 @@ use crate::ctype::{Bool, CType, Char, Const, GuestType, UserCallback, Volatile};
 use crate::ids::{Axes, AxisId, GuestAddr};
 use crate::limits::{N_CHANNELS, N_USER_DATA_VARS, VERSION};
 use crate::place::Place;
-use crate::start::Start::{self, Address, Double, Each, Fields, Float, Int, Text, Words, Zero};
-use crate::start::Stored;
+use crate::start::StartValue::{self, Address, Double, Each, Fields, Float, Int, Text, Words, Zero};
+use crate::start::StoreCondition;
 use crate::structs::{Chan, Gather, ParametricCoeff, Persist, Spindle, StructureField, TripCoeff};
 
 /// A firmware variable.
@@ -28,9 +28,9 @@ pub struct FirmwareVariable {
     /// Its size in bytes.
     pub size: u32,
     /// Its value at power-up.
-    pub start: Start,
+    pub start: StartValue,
     /// The power-ups at which it is stored.
-    pub stored: Stored,
+    pub stored: StoreCondition,
     /// Its meaning.
     pub doc: &'static str,
 }
@@ -76,8 +76,8 @@ pub const fn trip_coeffs(axis: AxisId) -> Place<[TripCoeff; 20]> {
 }
 
 macro_rules! variables {
-    (@stored starts) => { Stored::Always };
-    (@stored keeps) => { Stored::UnlessFlashed };
+    (@stored starts) => { StoreCondition::Always };
+    (@stored keeps) => { StoreCondition::UnlessFlashed };
     ($(
         $(#[doc = $doc:literal])+
         $place:ident = $name:ident: $ty:ty, at $address:literal, $stored:ident $start:expr;
@@ -153,7 +153,7 @@ fn field_of_axis(byte: u32) -> String {
 ///
 /// Rules of the table:
 /// - A row is ``/// meaning`` then `PLACE = CName: type, at address, starts value;`.
-/// - Types are those of [`ctype`](crate::ctype), values those of [`Start`](crate::start::Start).
+/// - Types are those of [`ctype`](crate::ctype), values those of [`StartValue`](crate::start::StartValue).
 /// - `starts` is stored at every power-up, `keeps` only when no user image has been flashed.
 #[macro_export]
 macro_rules! for_each_firmware_var {
@@ -395,7 +395,7 @@ mod tests {
             let pointee =
                 u32::from_str_radix(&row["pointee"][from + 2..from + 10], 16).expect("eight digits");
             let start = variable_named(&row["name"]).expect(&row["name"]).start;
-            assert_eq!(start, Start::Address(GuestAddr::new(pointee)), "{}", row["name"]);
+            assert_eq!(start, StartValue::Address(GuestAddr::new(pointee)), "{}", row["name"]);
         }
     }
 }

@@ -4,7 +4,7 @@
 
 use kmotiondef::AccessSize;
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, FirmwareFunction, Function, function_at};
-use kmotiondef::function::{Attributes, Polled};
+use kmotiondef::function::{Attributes, PolledState};
 use kmotiondef::limits::MAX_GATHER_DATA;
 use kmotiondef::map::{FPGA, TIMER0};
 use kmotiondef::structs::Chan;
@@ -14,11 +14,11 @@ use kmotiondef::variables::{
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId};
 use vm::bus::Bus;
 use vm::firmware::{
-    Caller, ExecutedPacket, Firmware, NextAccess, Outcome, Pure, ReadState, Repeats, SharedAccess, Signature,
-    SwitchPoint, TickContext, Value,
+    Caller, ExecutedPacket, Firmware, NextAccess, Outcome, Pure, ReadState, RepeatPolicy, SharedAccess,
+    Signature, SwitchPoint, TickContext, Value,
 };
 use vm::memory::GuestMemory;
-use vm::scheduler::Turn;
+use vm::scheduler::SliceOwner;
 use vm::trap::{Trap, TrapKind};
 
 use crate::commands::Scripts;
@@ -41,10 +41,10 @@ use crate::out::{Console, EventKind, Message, Out, Speaker};
 use crate::pc::Pc;
 use crate::pc::files::HostFiles;
 use crate::pc::host;
-use crate::servo::cache::Change;
+use crate::servo::cache::Invalidation;
 use crate::servo::{CallPlace, Servo, limits};
 use crate::text::legible;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use crate::world::Moment;
 use crate::world::trace::{Record, View};
 
@@ -103,7 +103,7 @@ impl Kernel {
     /// Returns whether the function at an address takes a free lock.
     pub(crate) fn takes_lock(&self, address: GuestAddr) -> bool {
         self.row(address).is_some_and(|row| {
-            matches!(row.attributes.polls, Some(Polled::Lock)) || row.name == Function::TestAndSet.name()
+            matches!(row.attributes.polls, Some(PolledState::Lock)) || row.name == Function::TestAndSet.name()
         })
     }
 
@@ -216,7 +216,7 @@ impl Kernel {
             out.remark_of(context.now, Speaker::Thread(thread), at, message);
         }
         for thread in ThreadId::all().filter(|thread| context.threads.state(*thread).is_active()) {
-            let reads = calls.waits.of(thread).calls.iter().filter(|call| call.polls == Polled::Bit);
+            let reads = calls.waits.of(thread).calls.iter().filter(|call| call.polls == PolledState::Bit);
             for bit in reads.filter_map(|call| Bit::new(call.argument)) {
                 if let Some(message) = moves_away(machine, io, context.memory, bit) {
                     out.remark_of(context.now, Speaker::Thread(thread), None, message);
@@ -430,13 +430,13 @@ impl Firmware for Kernel {
         Ok(outcome)
     }
 
-    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) -> Repeats {
+    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) -> RepeatPolicy {
         let Parts { races, out, switches, .. } = &mut self.parts;
         let repeats = races.as_mut().map(|races| races.accessed(access, memory, out));
         if let (Some(switches), Some(thread)) = (switches, access.thread) {
             switches.made(thread, access.at, access.address);
         }
-        repeats.unwrap_or(Repeats::Redundant)
+        repeats.unwrap_or(RepeatPolicy::Redundant)
     }
 
     fn take_ordering(&mut self) -> bool {
@@ -455,9 +455,11 @@ impl Firmware for Kernel {
     fn reads(&self, address: GuestAddr) -> Option<ReadState> {
         let row = self.row(address)?;
         match row.attributes.polls {
-            Some(Polled::Bit | Polled::Motion | Polled::Path | Polled::Recording) => Some(ReadState::Steady),
-            Some(Polled::Time) => row.attributes.waits.is_none().then_some(ReadState::Time),
-            Some(Polled::Lock) => None,
+            Some(PolledState::Bit | PolledState::Motion | PolledState::Path | PolledState::Recording) => {
+                Some(ReadState::Steady)
+            }
+            Some(PolledState::Time) => row.attributes.waits.is_none().then_some(ReadState::Time),
+            Some(PolledState::Lock) => None,
             None => row.attributes.is_pure.then_some(ReadState::Steady),
         }
     }
@@ -506,9 +508,9 @@ impl Firmware for Kernel {
         // These may be stored at addresses chosen by a program.
         let received = serial::tick(parts, context) | parts.exchange(context);
         if acted || received || is_touched {
-            parts.servo.cache.invalidate(Change::Memory);
+            parts.servo.cache.invalidate(Invalidation::Memory);
         }
-        if let Turn::User(thread) = moment.turn
+        if let SliceOwner::User(thread) = moment.turn
             && let Some(message) = parts.pc.host.watch(context.memory, thread)
         {
             let last = parts.servo.last_call.filter(|last| last.thread == Some(thread));
@@ -533,12 +535,12 @@ impl Firmware for Kernel {
         }
     }
 
-    fn switch_to(&mut self, turn: Turn, context: &mut TickContext<'_>) {
+    fn switch_to(&mut self, turn: SliceOwner, context: &mut TickContext<'_>) {
         self.parts.clock.slice_start = context.now;
         self.parts.clock.turn = turn;
         context.memory.untouched(|memory| memory.set(CURRENT_THREAD, i32::from(turn.number())));
-        if turn != Turn::Primary {
-            self.parts.servo.cache.invalidate(Change::Thread);
+        if turn != SliceOwner::Primary {
+            self.parts.servo.cache.invalidate(Invalidation::Thread);
         }
     }
 
@@ -558,7 +560,7 @@ impl Firmware for Kernel {
             host::slice(&mut pc.host, out, context),
         ] {
             if acts {
-                servo.cache.invalidate(Change::Anything);
+                servo.cache.invalidate(Invalidation::Anything);
             }
         }
         serial::slice(parts, context);

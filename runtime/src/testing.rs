@@ -7,7 +7,7 @@ use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
 use vm::call::CallArguments;
 use vm::firmware::{Caller, Firmware, Outcome, TickContext, Value, Wake};
 use vm::memory::GuestMemory;
-use vm::scheduler::Turn;
+use vm::scheduler::SliceOwner;
 use vm::thread::Threads;
 
 use crate::board::power_up;
@@ -27,7 +27,7 @@ pub(crate) struct TestBench {
 /// Guest memory as a board has it at power-up.
 pub(crate) fn powered_memory() -> GuestMemory {
     let mut memory = GuestMemory::new();
-    power_up::fill(&mut memory, VERSION.trim_end(), power_up::Before::Zero);
+    power_up::fill(&mut memory, VERSION.trim_end(), power_up::InitialMemory::Zero);
     memory
 }
 
@@ -159,9 +159,9 @@ impl TestBench {
             self.tick = self.tick.next();
             self.now = Cycles::new(self.tick.get() as i64 * Cycles::PER_TICK.get());
             let turn = if self.tick.get().is_multiple_of(2) {
-                Turn::Primary
+                SliceOwner::Primary
             } else {
-                Turn::User(ThreadId::all().next().expect("1"))
+                SliceOwner::User(ThreadId::all().next().expect("1"))
             };
             let mut context = TickContext {
                 memory: &mut self.memory,
@@ -171,7 +171,7 @@ impl TestBench {
             };
             self.kernel.tick(&mut context);
             self.kernel.switch_to(turn, &mut context);
-            if turn == Turn::Primary {
+            if turn == SliceOwner::Primary {
                 self.kernel.primary_slice(&mut context);
             }
         }

@@ -8,7 +8,7 @@ use kmotiondef::{AxisId, Field, GuestAddr, GuestType, Place, Plain, Scalar};
 use vm::memory::GuestMemory;
 
 /// Reads and writes typed places.
-pub(crate) trait Typed {
+pub(crate) trait TypedAccess {
     /// The value in a place.
     fn get<T: Scalar>(&self, place: Place<T>) -> T::Value;
     /// Stores a value in a place.
@@ -33,7 +33,7 @@ pub(crate) trait Typed {
     }
 }
 
-impl Typed for GuestMemory {
+impl TypedAccess for GuestMemory {
     #[inline]
     fn chan(&self, axis: AxisId) -> Place<Chan> {
         // Only a board with objects at other addresses has more axes than the tables.

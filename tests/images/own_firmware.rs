@@ -5,7 +5,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use boot::{BootedBoard, FirmwareFile, Halted, ProgramPacket, Ran, Sent};
+use boot::{BootedBoard, FirmwareFile, HaltError, ProgramPacket, RunOutcome, SentKind};
 use coff::{
     Contents, Image, Name, Program, Section, SectionFlags, SectionNumber, StorageClass, Symbol, SymbolType,
 };
@@ -120,7 +120,7 @@ fn firmware() -> Vec<u8> {
 fn booted() -> BootedBoard {
     let file = FirmwareFile::read(&firmware()).unwrap_or_else(|error| panic!("{error}"));
     let booted = BootedBoard::booted(Arc::new(file));
-    let mut board = booted.unwrap_or_else(|Halted::Crashed(crash)| panic!("{crash}"));
+    let mut board = booted.unwrap_or_else(|HaltError::Crashed(crash)| panic!("{crash}"));
     board.keep_pin_changes();
     board
 }
@@ -130,7 +130,7 @@ fn a_firmware_in_c_handles_its_timer_prints_and_drives_a_generator() {
     let mut board = booted();
     board.run_to(board.cycle() + 25 * TICK).unwrap_or_else(|halted| panic!("{halted}"));
     let lines: Vec<_> = board.take_lines().into_iter().map(|line| (line.kind, line.text)).collect();
-    assert_eq!(lines, ["tick 10", "tick 20"].map(|text| (Sent::Console, text.as_bytes().to_vec())));
+    assert_eq!(lines, ["tick 10", "tick 20"].map(|text| (SentKind::Console, text.as_bytes().to_vec())));
     let (steps, rate) = board.steps(2);
     assert!((rate - 2_083_333.333).abs() < 0.01, "{rate}");
     assert!((steps / rate - 20.0 * 90e-6).abs() < 100e-6, "{steps} steps since the fifth tick");
@@ -202,7 +202,9 @@ fn stops_do_not_change_a_run() {
     let mut board = booted();
     board.set_stops([tick, SERVICE]);
     let (mut ticks, mut calls) = (Vec::new(), Vec::new());
-    while board.run_to_stop(begin + 25 * TICK).unwrap_or_else(|halted| panic!("{halted}")) == Ran::ToStop {
+    while board.run_to_stop(begin + 25 * TICK).unwrap_or_else(|halted| panic!("{halted}"))
+        == RunOutcome::ToStop
+    {
         match board.processor_state().pc {
             SERVICE => calls.extend(board.program_call()),
             pc => {

@@ -41,7 +41,7 @@ pub enum Stop {
 
 /// The accesses to memory that threads can share which an engine reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Observed {
+pub enum ObservedAccesses {
     /// None.
     #[default]
     None,
@@ -402,7 +402,7 @@ pub trait Executor: Default {
 
     /// Determines which accesses to memory that threads can share are reported by contexts that are started from now on
     /// ([`Firmware::accessed`]).
-    fn observe(&mut self, observed: Observed);
+    fn observe(&mut self, observed: ObservedAccesses);
 
     /// Gives `id` a fresh context at the beginning of the function at `entry`.
     ///

@@ -1,7 +1,7 @@
 //! Redundant accesses: those that equal one that the context has already made in the same slice.
 //!
 //! No other thread runs in a slice. So an instruction that accesses the same address several times is reported once,
-//! unless the firmware requests repeats ([`Repeats`](crate::firmware::Repeats)). Accesses are kept in a table without
+//! unless the firmware requests repeats ([`RepeatPolicy`](crate::firmware::RepeatPolicy)). Accesses are kept in a table without
 //! collision lists: an access that is evicted by another is reported again. The table is the same on every engine, and
 //! so are the reports.
 

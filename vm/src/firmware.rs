@@ -9,7 +9,7 @@ use crate::bus::Bus;
 use crate::call::CallArguments;
 use crate::memory::GuestMemory;
 use crate::operand::Class;
-use crate::scheduler::Turn;
+use crate::scheduler::SliceOwner;
 use crate::slot::Slot;
 use crate::thread::Threads;
 use crate::trap::{Trap, TrapKind};
@@ -261,7 +261,7 @@ pub struct SharedAccess<'a> {
 
 /// The treatment of an access that an instruction repeats in the same slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Repeats {
+pub enum RepeatPolicy {
     /// It is reported again.
     Reported,
     /// It is redundant; the machine may omit it.
@@ -381,7 +381,7 @@ pub trait Firmware: Bus {
     }
 
     /// Gives the rest of this tick to `turn`.
-    fn switch_to(&mut self, turn: Turn, context: &mut TickContext<'_>) {
+    fn switch_to(&mut self, turn: SliceOwner, context: &mut TickContext<'_>) {
         let _ = (turn, context);
     }
 
@@ -418,9 +418,9 @@ pub trait Firmware: Bus {
     }
 
     /// Reports an access by a program, where the machine [observes](crate::machine::Config::observed) accesses.
-    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) -> Repeats {
+    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) -> RepeatPolicy {
         let _ = (access, memory);
-        Repeats::Reported
+        RepeatPolicy::Reported
     }
 
     /// Returns whether a call or an access since the last query has changed the order of accesses: all of them are then

@@ -29,15 +29,15 @@ use kmotiondef::jumps::JumpFunction;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use self::activation::{Exit, State};
-use self::code::{Code, Encoded, Words};
-use self::context::{Context, Saved};
+use self::code::{Code, EncodedProgram, Words};
+use self::context::{Context, SavedContext};
 use self::holds::Holds;
 use self::observe::Observer;
-use self::split::Split;
-use self::steps::{NextStep, Stepping};
+use self::split::SegmentRest;
+use self::steps::{NextStep, StepState};
 use crate::call::CallArguments;
 use crate::engine::{
-    AccessRange, CallEnd, CallStack, ContextId, Executor, ForeignSnapshot, FrameView, Hold, Observed,
+    AccessRange, CallEnd, CallStack, ContextId, Executor, ForeignSnapshot, FrameView, Hold, ObservedAccesses,
     Preemption, Slice, Stack, Stop,
 };
 use crate::firmware::{Firmware, Outcome, SwitchPoint};
@@ -51,15 +51,15 @@ use crate::trap::{Trap, TrapKind};
 /// Interprets programs.
 #[derive(Debug, Default)]
 pub struct BytecodeEngine {
-    words: Translations<Arc<Encoded>>,
-    contexts: [Option<Running>; ContextId::COUNT],
+    words: Translations<Arc<EncodedProgram>>,
+    contexts: [Option<RunningContext>; ContextId::COUNT],
     holds: Holds,
-    steps: Stepping,
+    steps: StepState,
 }
 
 /// A context, and the code that it executes.
 #[derive(Debug)]
-struct Running {
+struct RunningContext {
     code: Code,
     context: Context,
 }
@@ -80,9 +80,9 @@ impl BytecodeEngine {
 impl BytecodeEngine {
     /// Updates, in all contexts, the words at which they are held.
     fn refresh(&mut self) {
-        for Running { code, .. } in self.contexts.iter_mut().flatten() {
+        for RunningContext { code, .. } in self.contexts.iter_mut().flatten() {
             let observed = self.steps.observed();
-            let encode = |program: &Program| Encoded::new(program, observed, &|_| None);
+            let encode = |program: &Program| EncodedProgram::new(program, observed, &|_| None);
             let plain = self.words.get(&code.program, |program| Arc::new(encode(program)));
             code.words = self.holds.words(&code.program, plain);
         }
@@ -92,7 +92,7 @@ impl BytecodeEngine {
 /// The contexts of a bytecode engine as they were at an instant.
 #[derive(Debug)]
 pub struct BytecodeSnapshot {
-    contexts: [Option<(Code, Saved)>; ContextId::COUNT],
+    contexts: [Option<(Code, SavedContext)>; ContextId::COUNT],
     passes: [bool; ContextId::COUNT],
     /// The marks of the owners of pages, where accesses are reported.
     owners: Option<Box<[u8]>>,
@@ -106,7 +106,7 @@ impl Executor for BytecodeEngine {
         self.steps.preemption = preemption;
     }
 
-    fn observe(&mut self, observed: Observed) {
+    fn observe(&mut self, observed: ObservedAccesses) {
         self.steps.observer = Observer::new(observed);
     }
 
@@ -123,7 +123,8 @@ impl Executor for BytecodeEngine {
         if let Some(observer) = &mut self.steps.observer {
             observer.forget();
         }
-        let encode = |program: &Program| Encoded::new(program, observed, &|address| firmware.reads(address));
+        let encode =
+            |program: &Program| EncodedProgram::new(program, observed, &|address| firmware.reads(address));
         let words = self.words.get(program, |program| Arc::new(encode(program)));
         let words = self.holds.words(program, words);
         self.holds.passes[id.index()] = false;
@@ -134,12 +135,12 @@ impl Executor for BytecodeEngine {
             context.filter = self.steps.observer.as_ref().and_then(|observer| observer.filter(id));
         }
         context.reset(function, stack);
-        *place = Some(Running { code, context });
+        *place = Some(RunningContext { code, context });
         Ok(())
     }
 
     fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop {
-        let Some(Running { code, context }) = &mut self.contexts[id.index()] else {
+        let Some(RunningContext { code, context }) = &mut self.contexts[id.index()] else {
             return Stop::Ended;
         };
         self.steps.loops = code.words.loops();
@@ -157,7 +158,7 @@ impl Executor for BytecodeEngine {
     }
 
     fn snapshot(&self) -> BytecodeSnapshot {
-        let save = |running: &Running| (running.code.clone(), running.context.save());
+        let save = |running: &RunningContext| (running.code.clone(), running.context.save());
         BytecodeSnapshot {
             contexts: std::array::from_fn(|index| self.contexts[index].as_ref().map(save)),
             passes: self.holds.passes,
@@ -171,7 +172,7 @@ impl Executor for BytecodeEngine {
             *place = saved.as_ref().map(|(code, saved)| {
                 let mut context = old.map_or_else(Context::new, |running| running.context);
                 context.put_back(saved);
-                Running { code: code.clone(), context }
+                RunningContext { code: code.clone(), context }
             });
         }
         self.holds.passes = snapshot.passes;
@@ -187,7 +188,7 @@ impl Executor for BytecodeEngine {
     }
 
     fn backtrace(&self, id: ContextId) -> Vec<CodeAddr> {
-        let Some(Running { code, context }) = &self.contexts[id.index()] else { return Vec::new() };
+        let Some(RunningContext { code, context }) = &self.contexts[id.index()] else { return Vec::new() };
         context.backtrace().into_iter().map(|word| code.program.address_of(word)).collect()
     }
 
@@ -221,7 +222,7 @@ impl Executor for BytecodeEngine {
     }
 
     fn frames(&self, id: ContextId) -> Vec<FrameView> {
-        let Some(Running { code, context }) = &self.contexts[id.index()] else { return Vec::new() };
+        let Some(RunningContext { code, context }) = &self.contexts[id.index()] else { return Vec::new() };
         context.frames(|word| code.program.address_of(word))
     }
 
@@ -276,7 +277,7 @@ impl BytecodeEngine {
         if let Err(kind) = self.start(id, program, entry, stack, slice.firmware) {
             return trap(kind, at);
         }
-        let Some(Running { code, context }) = &mut self.contexts[id.index()] else {
+        let Some(RunningContext { code, context }) = &mut self.contexts[id.index()] else {
             return CallEnd::NoFunction;
         };
         if let Err(kind) = enter(&code.program, context) {
@@ -286,7 +287,9 @@ impl BytecodeEngine {
             context.set(register, *slot);
         }
         let stop = self.resume(id, slice);
-        let Some(Running { context, .. }) = &self.contexts[id.index()] else { return CallEnd::NoFunction };
+        let Some(RunningContext { context, .. }) = &self.contexts[id.index()] else {
+            return CallEnd::NoFunction;
+        };
         let at = program.address_of(context.calls.pc);
         let op = program.ops().get(context.calls.pc);
         match stop {
@@ -316,7 +319,7 @@ fn run<F: Firmware + ?Sized>(
     words: &Words,
     context: &mut Context,
     slice: &mut Slice<'_, F>,
-    steps: &mut Stepping,
+    steps: &mut StepState,
 ) -> Result<Stop, TrapKind> {
     if let Some(filter) = &context.filter {
         filter.continues(slice.tick);
@@ -370,7 +373,7 @@ fn run<F: Firmware + ?Sized>(
                 match steps.preemption {
                     Preemption::Segments => return Ok(Stop::Preempted),
                     Preemption::Instructions => {
-                        context.split = Split::begin(program, charge, &mut slice.budget);
+                        context.split = SegmentRest::begin(program, charge, &mut slice.budget);
                     }
                 }
             }

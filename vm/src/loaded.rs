@@ -14,14 +14,14 @@ pub use self::image::Image;
 
 /// The code that a thread is loaded with; each kind has its engine.
 #[derive(Clone, Debug)]
-pub enum Loaded {
+pub enum LoadedCode {
     /// Bytecode, for the bytecode engine of the machine.
     Program(Arc<Program>),
     /// Code of the real processor.
     Image(Arc<Image>),
 }
 
-impl Loaded {
+impl LoadedCode {
     /// The program, if it is bytecode.
     #[must_use]
     pub fn program(&self) -> Option<&Arc<Program>> {

@@ -17,16 +17,16 @@ use kmotiondef::map::BOARD_STACK_SIZE;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 
 use self::engines::Engines;
-use self::held::Held;
+use self::held::HoldPoint;
 pub use self::snapshot::Snapshot;
 use crate::dsp::{DspEngine, HotCode};
-use crate::engine::{ContextId, Engine, Observed, Polling, Preemption, Slice, Stop};
+use crate::engine::{ContextId, Engine, ObservedAccesses, Polling, Preemption, Slice, Stop};
 use crate::firmware::{Firmware, TickContext};
 use crate::interp::BytecodeEngine;
-use crate::loaded::Loaded;
-use crate::memory::{Faults, GuestMemory};
+use crate::loaded::LoadedCode;
+use crate::memory::{FaultPolicy, GuestMemory};
 use crate::program::Program;
-use crate::scheduler::{self, ThreadSet, Turn};
+use crate::scheduler::{self, SliceOwner, ThreadSet};
 use crate::thread::{NotLoaded, Progress, ThreadState, Threads};
 use crate::trap::{Trap, TrapKind};
 use crate::wake::Wake;
@@ -51,11 +51,11 @@ pub struct Config {
     /// Stacks as small as the board's.
     pub strict_stack: bool,
     /// The effect of accesses that a program should not make.
-    pub faults: Faults,
+    pub faults: FaultPolicy,
     /// The points at which threads that run bytecode lose the processor.
     pub preemption: Preemption,
     /// The accesses of bytecode to memory that threads can share which are reported to the firmware.
-    pub observed: Observed,
+    pub observed: ObservedAccesses,
 }
 
 impl Default for Config {
@@ -64,9 +64,9 @@ impl Default for Config {
             servo: None,
             shortcuts: true,
             strict_stack: false,
-            faults: Faults::Trap,
+            faults: FaultPolicy::Trap,
             preemption: Preemption::Segments,
-            observed: Observed::None,
+            observed: ObservedAccesses::None,
         }
     }
 }
@@ -77,16 +77,16 @@ pub struct Machine<F, E = BytecodeEngine> {
     config: Config,
     memory: GuestMemory,
     threads: Threads,
-    loaded: [Option<Loaded>; ThreadId::MAX as usize],
+    loaded: [Option<LoadedCode>; ThreadId::MAX as usize],
     /// By thread, the most cycles that its code spends between two tests of the budget.
     longest_steps: [Cycles; ThreadId::MAX as usize],
     engines: Engines<E>,
     firmware: F,
     tick: Ticks,
-    turn: Turn,
+    turn: SliceOwner,
     stack_reported: ThreadSet,
     /// The tick in progress, if a debugger holds it.
-    held: Option<Held>,
+    held: Option<HoldPoint>,
     work: u64,
     /// The cycles by which the last slice has run beyond its end, in the delay slots of a branch.
     shadow: Option<Cycles>,
@@ -129,7 +129,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             },
             firmware,
             tick: Ticks::default(),
-            turn: Turn::Primary,
+            turn: SliceOwner::Primary,
             stack_reported: ThreadSet::EMPTY,
             held: None,
             work: 0,
@@ -141,11 +141,11 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     ///
     /// The program's bytes are in guest memory already; its text is protected from now on.
     pub fn load_program(&mut self, thread: ThreadId, program: impl Into<Arc<Program>>, entry: GuestAddr) {
-        self.load(thread, Loaded::Program(program.into()), entry);
+        self.load(thread, LoadedCode::Program(program.into()), entry);
     }
 
     /// Loads code of any engine.
-    pub fn load(&mut self, thread: ThreadId, loaded: Loaded, entry: GuestAddr) {
+    pub fn load(&mut self, thread: ThreadId, loaded: LoadedCode, entry: GuestAddr) {
         self.memory.protect(thread, loaded.text());
         self.longest_steps[thread.index()] = loaded.longest_step(&|function| self.firmware.pure(function));
         self.loaded[thread.index()] = Some(loaded);
@@ -176,7 +176,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
 
     /// The code that is loaded in `thread`.
     #[must_use]
-    pub fn loaded(&self, thread: ThreadId) -> Option<&Loaded> {
+    pub fn loaded(&self, thread: ThreadId) -> Option<&LoadedCode> {
         self.loaded[thread.index()].as_ref()
     }
 
@@ -199,8 +199,8 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     /// [`Preemption::Instructions`].
     fn splits_statements(&self, thread: ThreadId) -> bool {
         match self.loaded(thread) {
-            Some(Loaded::Program(_)) => self.config.preemption == Preemption::Instructions,
-            Some(Loaded::Image(_)) => true,
+            Some(LoadedCode::Program(_)) => self.config.preemption == Preemption::Instructions,
+            Some(LoadedCode::Image(_)) => true,
             None => false,
         }
     }
@@ -267,7 +267,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
 
     /// The thread that had the slice of the last tick.
     #[must_use]
-    pub const fn turn(&self) -> Turn {
+    pub const fn turn(&self) -> SliceOwner {
         self.turn
     }
 
@@ -326,11 +326,11 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         let turn = self.turn;
         self.with_context(window.start + callback, |firmware, context| {
             firmware.switch_to(turn, context);
-            if turn == Turn::Primary {
+            if turn == SliceOwner::Primary {
                 firmware.primary_slice(context);
             }
         });
-        if let Turn::User(thread) = turn {
+        if let SliceOwner::User(thread) = turn {
             self.user_slice(thread, window);
         }
     }
@@ -384,7 +384,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
                 return Some(spent);
             }
             Stop::Held => {
-                self.held = Some(Held::Callback { address, begin, left });
+                self.held = Some(HoldPoint::Callback { address, begin, left });
                 return None;
             }
             Stop::Trapped(trap) => {
@@ -477,7 +477,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.work += (budget - left - slice.polling.passed()).get().unsigned_abs();
         self.threads.set_running(None);
         if stop == Stop::Held {
-            self.held = Some(Held::Slice { thread, window, left, woken });
+            self.held = Some(HoldPoint::Slice { thread, window, left, woken });
         }
         if self.firmware.follows_slices() {
             let is_interrupted = stop == Stop::Preempted && self.splits_statements(thread);

@@ -44,7 +44,7 @@ const FLASH_BASE: u32 = FLASH.base.get();
 
 /// The effect of accesses and divisions that are errors of a program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Faults {
+pub enum FaultPolicy {
     /// The access stops the thread.
     #[default]
     Trap,
@@ -154,7 +154,7 @@ pub struct GuestMemory {
     flash: Flash,
     map: &'static MemoryMap,
     protection: Protection,
-    faults: Faults,
+    faults: FaultPolicy,
     /// True if on-chip RAM may have been written, see [`GuestMemory::take_touched`].
     is_touched: bool,
     /// The regions of the last snapshot, which the next one shares.
@@ -200,7 +200,7 @@ pub(crate) struct RamRest<'a> {
     iram: &'a mut [u8],
     bases: Bases,
     protection: &'a Protection,
-    faults: Faults,
+    faults: FaultPolicy,
     is_touched: &'a mut bool,
 }
 
@@ -248,10 +248,10 @@ fn load_ram<T: Scalar>(sdram: &Sdram, iram: &[u8], bases: Bases, addr: GuestAddr
         .or_else(|| T::get_multiple(iram, address.wrapping_sub(bases.iram)))
 }
 
-const fn divided_by_zero(faults: Faults, op: WordDivision, a: i32) -> Result<i32, TrapKind> {
+const fn divided_by_zero(faults: FaultPolicy, op: WordDivision, a: i32) -> Result<i32, TrapKind> {
     match faults {
-        Faults::Trap => Err(TrapKind::DivisionByZero),
-        Faults::Board => Ok(op.by_zero(a)),
+        FaultPolicy::Trap => Err(TrapKind::DivisionByZero),
+        FaultPolicy::Board => Ok(op.by_zero(a)),
     }
 }
 
@@ -266,7 +266,7 @@ impl GuestMemory {
             flash: Flash::default(),
             map: &MemoryMap::KFLOP,
             protection: Protection::default(),
-            faults: Faults::default(),
+            faults: FaultPolicy::default(),
             is_touched: true,
             last: None,
             places: Places::default(),
@@ -275,7 +275,7 @@ impl GuestMemory {
     }
 
     /// Sets the effect of accesses and divisions that are errors of a program.
-    pub const fn set_faults(&mut self, faults: Faults) {
+    pub const fn set_faults(&mut self, faults: FaultPolicy) {
         self.faults = faults;
     }
 
@@ -340,8 +340,8 @@ impl GuestMemory {
     /// The address that an access of `addr` reaches: the board ignores the bits below `align`.
     pub(crate) const fn aligned(&self, addr: GuestAddr, align: u32) -> GuestAddr {
         match self.faults {
-            Faults::Trap => addr,
-            Faults::Board => GuestAddr::new(addr.get() & !(align - 1)),
+            FaultPolicy::Trap => addr,
+            FaultPolicy::Board => GuestAddr::new(addr.get() & !(align - 1)),
         }
     }
 
@@ -648,8 +648,8 @@ impl GuestMemory {
     /// The bytes from `addr` to the end of its area that reads as 0 on this board, if there is one.
     fn silent(&self, addr: GuestAddr) -> Option<&[u8]> {
         match self.faults {
-            Faults::Trap => None,
-            Faults::Board => SILENCE.get(..index(silent_from(addr)?)),
+            FaultPolicy::Trap => None,
+            FaultPolicy::Board => SILENCE.get(..index(silent_from(addr)?)),
         }
     }
 

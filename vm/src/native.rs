@@ -33,11 +33,11 @@ pub(crate) use self::code::Piece;
 pub(crate) use self::piece::{Handover, LINES, MARK_BITS, Marks, Places, VALUES};
 
 use self::code::MachineCode;
-use self::context::{Context, Saved};
+use self::context::{Context, SavedContext};
 use self::fiber::Fiber;
 use self::protected::ProtectedBlocks;
 use self::translate::FirmwareFacts;
-use crate::engine::{ContextId, Executor, ForeignSnapshot, Observed, Preemption, Slice, Stack, Stop};
+use crate::engine::{ContextId, Executor, ForeignSnapshot, ObservedAccesses, Preemption, Slice, Stack, Stop};
 use crate::firmware::Firmware;
 use crate::interp::observe::Observer;
 use crate::interp::{BytecodeEngine, BytecodeSnapshot};
@@ -66,7 +66,7 @@ pub struct NativeEngine {
 /// The contexts of a native engine as they were at an instant.
 #[derive(Debug)]
 pub struct NativeSnapshot {
-    contexts: [Option<Saved>; ContextId::COUNT],
+    contexts: [Option<SavedContext>; ContextId::COUNT],
     bytecode: BytecodeSnapshot,
     identity: Arc<()>,
 }
@@ -109,7 +109,7 @@ impl Executor for NativeEngine {
         self.bytecode.set_preemption(preemption);
     }
 
-    fn observe(&mut self, observed: Observed) {
+    fn observe(&mut self, observed: ObservedAccesses) {
         self.observer = Observer::new(observed);
         self.bytecode.observe_with(self.observer.as_ref().map(Observer::beside));
     }
@@ -167,7 +167,7 @@ impl Executor for NativeEngine {
         for (place, saved) in self.contexts.iter_mut().zip(&snapshot.contexts) {
             // First end the old fiber, which may use the same stack.
             *place = None;
-            *place = saved.as_ref().map(Saved::context);
+            *place = saved.as_ref().map(SavedContext::context);
         }
         Ok(())
     }

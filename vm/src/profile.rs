@@ -12,16 +12,17 @@ use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use crate::bus::Bus;
 use crate::engine::{
-    ContextId, Executor, ForeignSnapshot, Observed, Polling, Preemption, Slice, Stack, Stop,
+    ContextId, Executor, ForeignSnapshot, ObservedAccesses, Polling, Preemption, Slice, Stack, Stop,
 };
 use crate::firmware::{
-    Caller, Firmware, NextAccess, Outcome, Repeats, SharedAccess, Signature, SwitchPoint, TickContext, Value,
+    Caller, Firmware, NextAccess, Outcome, RepeatPolicy, SharedAccess, Signature, SwitchPoint, TickContext,
+    Value,
 };
 use crate::interp::{BytecodeEngine, BytecodeSnapshot};
 use crate::memory::GuestMemory;
 use crate::op::Op;
 use crate::program::Program;
-use crate::scheduler::Turn;
+use crate::scheduler::SliceOwner;
 use crate::trap::{Trap, TrapKind};
 use kmotiondef::AccessSize;
 
@@ -40,7 +41,7 @@ pub struct Site {
 
 /// The time spent at a site, in cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Spent {
+pub struct SpentTime {
     /// Processor time.
     pub computing: Cycles,
     /// Time in which a firmware function made the thread wait.
@@ -50,12 +51,12 @@ pub struct Spent {
 /// The time of a run, by site.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Profile {
-    spent: BTreeMap<Site, Spent>,
+    spent: BTreeMap<Site, SpentTime>,
 }
 
 impl Profile {
     /// The sites in order, and the time spent at each.
-    pub fn sites(&self) -> impl Iterator<Item = (&Site, Spent)> {
+    pub fn sites(&self) -> impl Iterator<Item = (&Site, SpentTime)> {
         self.spent.iter().map(|(site, spent)| (site, *spent))
     }
 
@@ -100,7 +101,8 @@ impl ProfilingEngine {
     fn run_segment<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop {
         let site = self.site(id);
         let left = slice.budget;
-        let mut metered = Metered { firmware: slice.firmware, length: slice.length, left, called: None };
+        let mut metered =
+            MeteredFirmware { firmware: slice.firmware, length: slice.length, left, called: None };
         let mut part = Slice {
             memory: slice.memory,
             threads: slice.threads,
@@ -158,7 +160,7 @@ impl Executor for ProfilingEngine {
     /// Always [`Preemption::Segments`]: the account is of whole segments.
     fn set_preemption(&mut self, _: Preemption) {}
 
-    fn observe(&mut self, observed: Observed) {
+    fn observe(&mut self, observed: ObservedAccesses) {
         self.inner.observe(observed);
     }
 
@@ -209,7 +211,7 @@ impl Executor for ProfilingEngine {
 
 /// The firmware, with the real budget and a record of the cycles spent by its calls.
 #[derive(Debug)]
-struct Metered<'a, F: ?Sized> {
+struct MeteredFirmware<'a, F: ?Sized> {
     firmware: &'a mut F,
     /// The budget of the whole slice, in cycles.
     length: Cycles,
@@ -219,7 +221,7 @@ struct Metered<'a, F: ?Sized> {
     called: Option<(GuestAddr, Cycles)>,
 }
 
-impl<F: Firmware + ?Sized> Bus for Metered<'_, F> {
+impl<F: Firmware + ?Sized> Bus for MeteredFirmware<'_, F> {
     fn read(&mut self, addr: GuestAddr, size: AccessSize, now: Cycles) -> u32 {
         self.firmware.read(addr, size, now)
     }
@@ -233,7 +235,7 @@ impl<F: Firmware + ?Sized> Bus for Metered<'_, F> {
     }
 }
 
-impl<F: Firmware + ?Sized> Firmware for Metered<'_, F> {
+impl<F: Firmware + ?Sized> Firmware for MeteredFirmware<'_, F> {
     fn signature(&self, address: GuestAddr) -> Option<&Signature> {
         self.firmware.signature(address)
     }
@@ -260,7 +262,7 @@ impl<F: Firmware + ?Sized> Firmware for Metered<'_, F> {
         outcome
     }
 
-    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) -> Repeats {
+    fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) -> RepeatPolicy {
         self.firmware.accessed(access, memory)
     }
 
@@ -288,7 +290,7 @@ impl<F: Firmware + ?Sized> Firmware for Metered<'_, F> {
         self.firmware.servo_time(memory)
     }
 
-    fn switch_to(&mut self, turn: Turn, context: &mut TickContext<'_>) {
+    fn switch_to(&mut self, turn: SliceOwner, context: &mut TickContext<'_>) {
         self.firmware.switch_to(turn, context);
     }
 

@@ -21,12 +21,12 @@ pub(crate) struct Protection {
     area: ProgramSpaces,
     map: Box<[u64]>,
     /// The addresses from the first to the last protected byte: most stores are outside and skip the map.
-    hull: Hull,
+    hull: ByteRange,
 }
 
 /// The `size` bytes from `first` on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Hull {
+struct ByteRange {
     first: u32,
     size: u32,
 }
@@ -42,7 +42,7 @@ impl Protection {
     pub(crate) fn of(area: ProgramSpaces) -> Self {
         let words = ((area.limit - area.base) / GRANULE).div_ceil(u64::BITS) as usize;
         let map = vec![0; words].into_boxed_slice();
-        Self { texts: Default::default(), area, map, hull: Hull::default() }
+        Self { texts: Default::default(), area, map, hull: ByteRange::default() }
     }
 
     /// Sets `thread`'s range; only whole granules inside the program area are protected.
@@ -63,7 +63,7 @@ impl Protection {
                 self.map[(bit / u64::BITS) as usize] |= 1 << (bit % u64::BITS);
             }
         }
-        self.hull = Hull { first: lowest, size: highest.saturating_sub(lowest) };
+        self.hull = ByteRange { first: lowest, size: highest.saturating_sub(lowest) };
     }
 
     /// The protected ranges, before they are cut to whole granules inside the program area.

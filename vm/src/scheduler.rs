@@ -6,7 +6,7 @@ use kmotiondef::ThreadId;
 
 /// The owner of a slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Turn {
+pub enum SliceOwner {
     /// The primary thread, number 0.
     #[default]
     Primary,
@@ -14,7 +14,7 @@ pub enum Turn {
     User(ThreadId),
 }
 
-impl Turn {
+impl SliceOwner {
     /// The thread's number, 0 for the primary thread.
     #[must_use]
     pub const fn number(self) -> u8 {
@@ -78,16 +78,16 @@ impl FromIterator<ThreadId> for ThreadSet {
 
 /// The thread after `current`: the next active one in ascending order, then the primary thread.
 #[must_use]
-pub fn next(active: ThreadSet, current: Turn) -> Turn {
+pub fn next(active: ThreadSet, current: SliceOwner) -> SliceOwner {
     let passed = (2 << current.number()) - 1;
     let left = u32::from(active.bits()) & !passed;
     // No bit is number 32, which is no thread's.
-    ThreadId::new(left.trailing_zeros().cast_signed()).map_or(Turn::Primary, Turn::User)
+    ThreadId::new(left.trailing_zeros().cast_signed()).map_or(SliceOwner::Primary, SliceOwner::User)
 }
 
 /// The thread `ticks` ticks after `current`, while the same threads are active.
 #[must_use]
-pub fn after(active: ThreadSet, current: Turn, ticks: u64) -> Turn {
+pub fn after(active: ThreadSet, current: SliceOwner, ticks: u64) -> SliceOwner {
     // From the slice of an inactive thread, the rotation first returns to its cycle.
     if ticks == 0 {
         return current;
@@ -108,7 +108,7 @@ mod tests {
     fn check(active: &[i32], expected: &str) {
         let active = set(active);
         let first = expected.bytes().next().map_or(0, |digit| digit - b'0');
-        let mut turn = ThreadId::new(i32::from(first)).map_or(Turn::Primary, Turn::User);
+        let mut turn = ThreadId::new(i32::from(first)).map_or(SliceOwner::Primary, SliceOwner::User);
         let mut slices = String::new();
         for count in 0..40 {
             assert_eq!(after(active, turn, 0), turn, "after {count} slices");
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn many_turns_at_once_are_the_same_as_one_by_one() {
         for active in [set(&[]), set(&[3]), set(&[1, 4, 7])] {
-            for start in [Turn::Primary, Turn::User(ThreadId::new(2).expect("2 is a thread"))] {
+            for start in [SliceOwner::Primary, SliceOwner::User(ThreadId::new(2).expect("2 is a thread"))] {
                 let mut turn = start;
                 for ticks in 0..20 {
                     assert_eq!(after(active, start, ticks), turn);

@@ -10,7 +10,7 @@ use crate::machine::{Config, Machine};
 use crate::memory::GuestMemory;
 use crate::operand::Class;
 use crate::program::Program;
-use crate::scheduler::Turn;
+use crate::scheduler::SliceOwner;
 use crate::text::assemble;
 use crate::trap::{Trap, TrapKind};
 use crate::verify::verify;
@@ -206,7 +206,7 @@ impl Firmware for Fake {
         self.ticks += 1;
     }
 
-    fn switch_to(&mut self, turn: Turn, _: &mut TickContext<'_>) {
+    fn switch_to(&mut self, turn: SliceOwner, _: &mut TickContext<'_>) {
         self.slices.push(char::from(b'0' + turn.number()));
     }
 

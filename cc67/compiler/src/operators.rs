@@ -95,7 +95,7 @@ pub(crate) enum OperatorMeaning {
 }
 
 /// A computation of two integers.
-pub(crate) type Integers = fn(i64, i64) -> Option<i64>;
+pub(crate) type IntegerOperation = fn(i64, i64) -> Option<i64>;
 
 /// Passes every operation to the macro `$m`: its printed form, the machine's operator, and the computations in `#if`,
 /// also for unsigned operands if they differ, and in index checks, which have no width.
@@ -157,7 +157,7 @@ macro_rules! define_binary_ops {
 
             /// The computation on integers of 64 bits; `None` for a division by zero.
             #[must_use]
-            pub(crate) const fn in_64_bits(self, is_unsigned: bool) -> Integers {
+            pub(crate) const fn in_64_bits(self, is_unsigned: bool) -> IntegerOperation {
                 match self {
                     $($(Self::$op if is_unsigned => $unsigned,)?
                     Self::$op => $signed,)*
@@ -168,7 +168,7 @@ macro_rules! define_binary_ops {
             /// and for results beyond 64 bits.
             #[must_use]
             pub(crate) fn exactly(self, a: i64, b: i64) -> Option<i64> {
-                let exact: Option<Integers> = match self {
+                let exact: Option<IntegerOperation> = match self {
                     $(Self::$op => define_binary_ops!(@exact $($exact)?),)*
                 };
                 exact.and_then(|exact| exact(a, b))

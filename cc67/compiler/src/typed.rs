@@ -162,7 +162,7 @@ pub struct AddressWord {
 
 /// Parameters that the source does not write.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Hidden {
+pub struct HiddenParameters {
     /// For a variadic function, the last parameter: address of the variable arguments.
     pub variable_arguments: Option<LocalId>,
     /// For a structure result, the first parameter: where to store it.
@@ -179,7 +179,7 @@ pub struct Function {
     /// Parameters in order. A structure parameter's local holds the caller's copy; see [`Local::by_pointer`].
     pub parameters: Vec<LocalId>,
     /// The parameters that are passed in addition to the declared ones.
-    pub hidden: Hidden,
+    pub hidden: HiddenParameters,
     /// Parameters, variables and temporaries.
     pub locals: PrimaryMap<LocalId, Local>,
     /// Expressions.

@@ -14,7 +14,7 @@ use kmotiondef::GuestAddr;
 use kmotiondef::modes::GatherType;
 
 use crate::diag::{Diagnostic, Lint, Severity};
-use crate::driver::{CompileContext, CompileRequest, Front, Options, on_large_stack};
+use crate::driver::{CompileContext, CompileRequest, FrontEndOutput, Options, on_large_stack};
 use crate::firmware::{FirmwareKind, FirmwareSymbols};
 use crate::lints;
 use crate::pp::{Disk, Files};
@@ -149,7 +149,7 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
     let before = text.len() as u32;
     text.extend(format!("\ndouble {FUNCTION}(void) {{ return (\n{expression}\n); }}\n").bytes());
     let request = CompileRequest { path: scope.path, options: scope.options, files: scope.files };
-    let Front { main, mut unit } = request.front(text, &mut context);
+    let FrontEndOutput { main, mut unit } = request.front(text, &mut context);
     let CompileContext { sources, names, mut sink } = context;
     let error = sink.diagnostics().iter().find(|diagnostic| diagnostic.severity == Severity::Error);
     if let Some(error) = error {

@@ -20,13 +20,13 @@ use runtime::debug::DebugInfo;
 use runtime::stimulus::Stimulus;
 use runtime::trace::{Item, Quantity, TraceRequest};
 use runtime::{Answers, Event, EventKind, HostFiles, OpenBox, RemoteBoard as _, RequestServer};
-use vm::scheduler::Turn;
+use vm::scheduler::SliceOwner;
 use vm::thread::ThreadState;
 
 use crate::bench::Bench;
 use crate::clock::{PassingTime, now};
 use crate::commands::Commands;
-use crate::controller::sampling::Sampling;
+use crate::controller::sampling::ActiveSampling;
 use crate::files::{FileRemarks, Files};
 use crate::image;
 use crate::monitor::{self, Monitor};
@@ -46,7 +46,7 @@ const LAST_LINES: Duration = Duration::from_secs(5);
 type ProgressSink = Box<dyn FnMut(ThreadId, Progress) + Send>;
 
 /// The terms of a load.
-struct Loading {
+struct LoadSettings {
     /// The version of the firmware for which sources are linked.
     linked_for: String,
     terms: LoadTerms,
@@ -57,7 +57,7 @@ struct Loading {
 pub struct Controller {
     client: RefCell<Client>,
     monitor: RefCell<Monitor>,
-    loading: Loading,
+    loading: LoadSettings,
     time: PassingTime,
     /// The last status record.
     status: Option<Status>,
@@ -69,7 +69,7 @@ pub struct Controller {
     pending: Vec<EventKind>,
     remarks: FileRemarks,
     recording: Option<BoardRecording>,
-    sampling: Option<Sampling>,
+    sampling: Option<ActiveSampling>,
     /// The stimulus, performed by a person and the PC.
     bench: Bench,
     /// True if the status record has been read since the bench last checked it.
@@ -102,7 +102,7 @@ impl Controller {
             client: RefCell::new(client),
             monitor: RefCell::new(monitor),
             seen: SeenMemory::new(board),
-            loading: Loading { linked_for, terms, progress },
+            loading: LoadSettings { linked_for, terms, progress },
             time: PassingTime::new(),
             status: None,
             threads: BoardThreads::new(),
@@ -324,7 +324,7 @@ impl Target for Controller {
     }
 
     fn take_samples(&mut self) -> Option<Vec<(Ticks, Vec<f64>)>> {
-        self.sampling.as_mut().map(Sampling::take)
+        self.sampling.as_mut().map(ActiveSampling::take)
     }
 
     fn has_ended(&self) -> bool {
@@ -335,8 +335,8 @@ impl Target for Controller {
                 && now().duration_since(self.time.heard) >= SILENCE
     }
 
-    fn turn(&self) -> Turn {
-        Turn::Primary
+    fn turn(&self) -> SliceOwner {
+        SliceOwner::Primary
     }
 
     fn load(&mut self, program: &UserProgram) -> Result<(), HostError> {

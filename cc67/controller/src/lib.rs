@@ -59,7 +59,7 @@ mod threads;
 pub use cc67_wire::{Address, AddressError, Client, FoundBoard, Progress, WireError, boards, kognas};
 pub use connection::ControllerLink;
 pub use controller::Controller;
-pub use saving::Unsettled;
+pub use saving::UnsettledState;
 pub use terms::{LoadTerms, ProgramStart};
 
 /// The beginning of a request to the person at the controller, in an [event](runtime::EventKind::Host).

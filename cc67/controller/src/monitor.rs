@@ -62,7 +62,7 @@ impl Task {
 
 /// The monitor in its thread.
 #[derive(Clone, Copy, Debug)]
-struct Resident {
+struct ResidentMonitor {
     thread: ThreadId,
     /// The address of its request.
     request: u32,
@@ -79,7 +79,7 @@ pub(crate) struct Monitor {
     linked_for: String,
     /// True if a view has allowed it.
     is_allowed: bool,
-    resident: Option<Resident>,
+    resident: Option<ResidentMonitor>,
     /// The thread into which it was last loaded, until that has been reported.
     announced: Option<ThreadId>,
     /// Recently read memory, in blocks.
@@ -182,7 +182,7 @@ impl Monitor {
             None => self.load(board, free)?,
         };
         let serial = resident.serial.wrapping_add(1);
-        self.resident = Some(Resident { serial, ..resident });
+        self.resident = Some(ResidentMonitor { serial, ..resident });
         let [kind, address, count] = request.words();
         let bytes: Vec<u8> = [serial, kind, address, count].into_iter().flat_map(u32::to_le_bytes).collect();
         let answer = exchange(board, resident, &bytes, request.room());
@@ -196,7 +196,7 @@ impl Monitor {
     }
 
     /// Compiles and loads the monitor.
-    fn load(&mut self, board: &mut Client, free: &[ThreadId]) -> Result<Resident, HostError> {
+    fn load(&mut self, board: &mut Client, free: &[ThreadId]) -> Result<ResidentMonitor, HostError> {
         let Some(thread) = free.last().copied() else {
             return Err(HostError::Link(
                 "no thread is free for cc67's monitor, which reads memory: all have programs or are active"
@@ -205,7 +205,7 @@ impl Monitor {
         };
         let request = PROGRAM.load(board, &self.options, &self.linked_for, thread)?;
         self.announced = Some(thread);
-        Ok(Resident { thread, request, serial: 0 })
+        Ok(ResidentMonitor { thread, request, serial: 0 })
     }
 }
 
@@ -220,7 +220,7 @@ struct MonitorReply {
 /// Stores a request, starts the monitor, and reads its answer when it has ended.
 fn exchange(
     board: &mut Client,
-    resident: Resident,
+    resident: ResidentMonitor,
     request: &[u8],
     room: u32,
 ) -> Result<MonitorReply, WireError> {

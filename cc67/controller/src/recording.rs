@@ -25,7 +25,7 @@ const AT_ONCE: u32 = 64;
 
 /// The reason why a quantity cannot be recorded.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Unrecordable(pub(crate) String);
+pub(crate) struct RecordingError(pub(crate) String);
 
 /// A recording.
 #[derive(Debug)]
@@ -72,9 +72,9 @@ impl BoardRecording {
         request: &TraceRequest,
         place: impl Fn(GuestAddr) -> GuestAddr,
         buffer: GuestAddr,
-    ) -> Result<Self, Unrecordable> {
+    ) -> Result<Self, RecordingError> {
         let cell = |quantity: &Quantity| {
-            let cell = quantity.cell().ok_or_else(|| Unrecordable(format!("`{quantity}`")))?;
+            let cell = quantity.cell().ok_or_else(|| RecordingError(format!("`{quantity}`")))?;
             // Expressions name variables at their own addresses; items name them by their addresses in the tables.
             let address = if quantity.item().is_some() { place(cell.address) } else { cell.address };
             Ok(RecordedCell { address, ..cell })
@@ -90,7 +90,7 @@ impl BoardRecording {
         }));
         if cells.len() >= MAX_GATHER_VALUES {
             let most = MAX_GATHER_VALUES - 1;
-            return Err(Unrecordable(format!("{} values: the recorder takes {most}", cells.len())));
+            return Err(RecordingError(format!("{} values: the recorder takes {most}", cells.len())));
         }
         Ok(Self { cells, requested, axes, every: request.every, descriptor: place(GATHER.address()), buffer })
     }
@@ -207,7 +207,7 @@ mod tests {
 
     use super::*;
 
-    fn recording(names: &[&str]) -> Result<BoardRecording, Unrecordable> {
+    fn recording(names: &[&str]) -> Result<BoardRecording, RecordingError> {
         let item = |name: &&str| Quantity::from(Item::new(name).expect("an item"));
         let quantities = names.iter().map(item).collect();
         let request = TraceRequest { quantities, every: 2, changes: false, packets: None };
@@ -227,7 +227,7 @@ mod tests {
 
     #[test]
     fn what_is_no_variable_is_refused() {
-        assert_eq!(recording(&["bit46"]).map(drop), Err(Unrecordable("`bit46`".to_owned())));
+        assert_eq!(recording(&["bit46"]).map(drop), Err(RecordingError("`bit46`".to_owned())));
         let many: Vec<_> = (0..32).map(|index| format!("persist{index}")).collect();
         let many: Vec<_> = many.iter().map(String::as_str).collect();
         assert!(recording(&many).is_err_and(|error| error.0.contains("takes 31")));

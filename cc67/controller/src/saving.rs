@@ -10,14 +10,14 @@ use crate::image;
 
 /// The state that should not be saved to flash for the next power-up.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Unsettled {
+pub struct UnsettledState {
     /// Active threads: their variables would be saved in the middle of their work.
     pub threads: Vec<ThreadId>,
     /// Enabled axes: they would be saved as enabled.
     pub axes: Vec<AxisId>,
 }
 
-impl Unsettled {
+impl UnsettledState {
     fn of(status: &Status, axes: Axes) -> Self {
         Self {
             threads: ThreadId::all().filter(|thread| status.is_active(*thread)).collect(),
@@ -44,9 +44,9 @@ impl ControllerLink {
     ///
     /// # Errors
     /// The controller does not answer.
-    pub fn unsettled(&mut self) -> Result<Unsettled, WireError> {
+    pub fn unsettled(&mut self) -> Result<UnsettledState, WireError> {
         let axes = self.board().map_or(Axes::default(), |board| board.axes);
-        Ok(Unsettled::of(&self.0.status()?, axes))
+        Ok(UnsettledState::of(&self.0.status()?, axes))
     }
 
     /// Loads a program linked for the firmware `linked_for`, without starting it.

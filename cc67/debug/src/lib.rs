@@ -31,9 +31,9 @@ mod shell;
 mod words;
 
 pub use debugger::{
-    Breakpoint, BreakpointKind, Catches, CodePlace, DebugError, Debugger, HitCondition, Reason,
+    Breakpoint, BreakpointKind, Catchpoints, CodePlace, DebugError, Debugger, HitCondition, Reason,
     ShownVariable, StackFrame, Stop, WatchedAccess,
 };
 pub use programs::Programs;
 pub use shell::{CommandOutput, Output, Shell};
-pub use words::{BreakWords, LineReader};
+pub use words::{BreakArguments, LineReader};

@@ -23,7 +23,7 @@ use vm::engine::ContextId;
 
 use crate::debugger::{DebugError, Debugger, Reason, StackFrame, Stop, WatchedAccess};
 use crate::early::EarlyLines;
-use crate::words::{BreakWords, LineReader, is_move, split_if};
+use crate::words::{BreakArguments, LineReader, is_move, split_if};
 use history::{KeptValue, ShownValues};
 use listing::ListedLines;
 use memory::MemoryForm;
@@ -398,7 +398,7 @@ impl<T: Target> Shell<T> {
     }
 
     fn set_break(&mut self, rest: &str, is_temporary: bool) -> Result<String, DebugError> {
-        let BreakWords { place, thread, condition } = BreakWords::of(rest);
+        let BreakArguments { place, thread, condition } = BreakArguments::of(rest);
         let own = self.debugger.present().map(|place| place.line.to_string());
         let place = if place.is_empty() {
             own.ok_or("No default breakpoint location now.")?

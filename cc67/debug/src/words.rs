@@ -187,7 +187,7 @@ impl LineReader {
 
 /// The arguments of `break`: `[PLACE] [thread N] [if CONDITION]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BreakWords<'a> {
+pub struct BreakArguments<'a> {
     /// The place; empty for the present one.
     pub place: &'a str,
     /// The thread for which it is set; `None` for all.
@@ -196,7 +196,7 @@ pub struct BreakWords<'a> {
     pub condition: Option<&'a str>,
 }
 
-impl<'a> BreakWords<'a> {
+impl<'a> BreakArguments<'a> {
     /// Parses the arguments.
     #[must_use]
     pub fn of(text: &'a str) -> Self {
@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn a_breakpoint_has_a_place_a_thread_and_a_condition() {
         let parts = |text| {
-            let BreakWords { place, thread, condition } = BreakWords::of(text);
+            let BreakArguments { place, thread, condition } = BreakArguments::of(text);
             (place.to_owned(), thread.map(ThreadId::get), condition.map(str::to_owned))
         };
         assert_eq!(parts("a.c:3 thread 2 if n > 1"), ("a.c:3".to_owned(), Some(2), Some("n > 1".to_owned())));

@@ -61,13 +61,13 @@ pub use message::fill;
 pub use remark::SourceCall;
 pub use schedule::Schedule;
 pub use session::{
-    Attendant, Branch, BranchId, End, Ending, EndingAxis, EndingThread, History, Idle, Input, Interrupter,
-    Session, Setup, Snapshot, Timeline, TimelineError, Until, Watch, WatchError,
+    Attendant, AxisReport, Branch, BranchId, End, EndReport, History, IdleWork, Input, Interrupter, Session,
+    Setup, Snapshot, ThreadReport, Timeline, TimelineError, Until, Watch, WatchError,
 };
 pub use state::{REPLY_BYTES, Status};
 pub use target::{
-    AnyTarget, BootedFirmware, BootedTarget, CONSOLE_LINES, Connected, EventSink, FirmwareError, NoSnapshot,
-    Target, TargetSnapshot,
+    AnyTarget, BootedFirmware, BootedTarget, CONSOLE_LINES, ConnectedTarget, EventSink, FirmwareError,
+    NoSnapshot, Target, TargetSnapshot,
 };
 pub use user_program::UserProgram;
 /// The crates whose types appear in this interface, for programs that depend on none of our other crates.

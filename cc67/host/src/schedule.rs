@@ -12,7 +12,7 @@ use std::str::FromStr;
 
 use kmotiondef::{Cycles, ThreadId};
 use runtime::stimulus::{Stimulus, Trigger};
-use vm::engine::{Observed, Preemption};
+use vm::engine::{ObservedAccesses, Preemption};
 
 use crate::{HostError, Setup};
 
@@ -44,7 +44,7 @@ impl Schedule {
         if seed == 0 {
             return schedule;
         }
-        let mut numbers = Numbers(seed);
+        let mut numbers = RandomNumbers(seed);
         for _ in 0..numbers.below(4) {
             let exponent = 3 + numbers.below(MAX_EXPONENT - 2);
             schedule.switches.insert(1 + numbers.below(1 << exponent));
@@ -111,7 +111,7 @@ impl Setup {
         }
         self.stimulus.extend(Stimulus::parse(&starts, "--schedule")?);
         self.config.machine.preemption = Preemption::Instructions;
-        self.config.machine.observed = Observed::All;
+        self.config.machine.observed = ObservedAccesses::All;
         self.config.switches.clone_from(&schedule.switches);
         Ok(())
     }
@@ -161,9 +161,9 @@ impl Schedule {
 }
 
 /// A small random number generator (Steele and others, splitmix64).
-struct Numbers(u64);
+struct RandomNumbers(u64);
 
-impl Numbers {
+impl RandomNumbers {
     fn below(&mut self, limit: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut number = self.0;

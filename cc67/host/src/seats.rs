@@ -19,11 +19,11 @@ pub type Closer = Box<dyn FnOnce() + Send>;
 #[derive(Clone, Debug)]
 pub struct Seats {
     most: usize,
-    taken: Arc<Mutex<Taken>>,
+    taken: Arc<Mutex<SeatTable>>,
 }
 
 #[derive(Debug, Default)]
-struct Taken {
+struct SeatTable {
     /// The number of events so far.
     events: u64,
     seats: Vec<TakenSeat>,
@@ -66,7 +66,7 @@ impl Seats {
         Self { most, taken: Arc::default() }
     }
 
-    fn taken(&self) -> MutexGuard<'_, Taken> {
+    fn taken(&self) -> MutexGuard<'_, SeatTable> {
         // The list is consistent at all times.
         self.taken.lock().unwrap_or_else(PoisonError::into_inner)
     }

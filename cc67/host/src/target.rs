@@ -18,19 +18,19 @@ mod any;
 mod booted;
 mod model;
 
-pub use any::{AnyTarget, Connected, NoSnapshot};
+pub use any::{AnyTarget, ConnectedTarget, NoSnapshot};
 pub use booted::{BootedFirmware, BootedTarget, FirmwareError};
 
 use std::fmt::Debug;
 
 use kmotiondef::{Axes, AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
-use runtime::standing::{StandingAxis, StandingThread};
+use runtime::standing::{UnfinishedThread, UsedAxis};
 use runtime::stimulus::Stimulus;
 use runtime::trace::{Item, Quantity, TraceRequest};
 use runtime::{Event, OpenBox};
 use vm::engine::{AccessRange, CallEnd, ContextId, FrameView, Hold};
-use vm::scheduler::{ThreadSet, Turn};
+use vm::scheduler::{SliceOwner, ThreadSet};
 use vm::thread::ThreadState;
 
 use crate::capability::{Capability, Unsupported};
@@ -115,7 +115,7 @@ pub trait Target {
     fn has_ended(&self) -> bool;
 
     /// The owner of the processor in the last tick.
-    fn turn(&self) -> Turn;
+    fn turn(&self) -> SliceOwner;
 
     /// Loads a program into its thread, which is stopped first.
     ///
@@ -190,12 +190,12 @@ pub trait Target {
     fn runs_processor_code(&self, thread: ThreadId) -> Option<bool>;
 
     /// Threads that have not ended, and what they wait for; empty where unknown.
-    fn standing_threads(&self) -> Vec<StandingThread> {
+    fn standing_threads(&self) -> Vec<UnfinishedThread> {
         Vec::new()
     }
 
     /// Axes that programs have used, and what they do; empty where unknown.
-    fn standing_axes(&self) -> Vec<StandingAxis> {
+    fn standing_axes(&self) -> Vec<UsedAxis> {
         Vec::new()
     }
 

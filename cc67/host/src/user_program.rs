@@ -7,7 +7,7 @@ use std::sync::Arc;
 use compiler::diag::levels::Levels;
 use compiler::diag::{Diagnostic, Severity};
 use compiler::inspect::{EntryKind, Inspection};
-use compiler::link::{Linked, LinkedLine};
+use compiler::link::{LinkedLine, LinkedProgram};
 use compiler::pp::Disk;
 use compiler::render::human::{Color, Renderer};
 use compiler::render::vendor;
@@ -63,7 +63,7 @@ impl UserProgram {
     ///
     /// # Errors
     /// The program exceeds the limits of an image.
-    pub fn of_linked(path: &Path, linked: &Linked) -> Result<Self, image::WriteError> {
+    pub fn of_linked(path: &Path, linked: &LinkedProgram) -> Result<Self, image::WriteError> {
         let image = image::write(linked)?;
         let detail = |line: &LinkedLine| CodeDetail {
             address: line.address.get(),
@@ -130,7 +130,12 @@ fn read(path: &Path) -> Result<Vec<u8>, HostError> {
 }
 
 /// Compiles and links a source for a thread.
-fn build(path: &Path, text: Vec<u8>, thread: ThreadId, options: &Options) -> Result<Linked, HostError> {
+fn build(
+    path: &Path,
+    text: Vec<u8>,
+    thread: ThreadId,
+    options: &Options,
+) -> Result<LinkedProgram, HostError> {
     let failed = |text: String| HostError::Compile(CompileError::new(text));
     let mut compilation = compiler::compile(path, text, options, &Disk);
     let linked = compilation.link(thread, options);

@@ -31,14 +31,14 @@ pub(crate) enum Incoming {
     /// A page has made a request.
     Ask(PageId, PageRequest),
     /// A file of a program was saved.
-    Saved(Box<Compiled>),
+    Saved(Box<CompileResult>),
     /// The machine file was saved; the error if it is not valid.
     Machine(Result<(), String>),
 }
 
 /// The result of compiling a saved program.
 #[derive(Debug)]
-pub(crate) struct Compiled {
+pub(crate) struct CompileResult {
     /// The program.
     pub(crate) program: Program,
     /// The image, or the errors.
@@ -83,10 +83,10 @@ impl Hub {
 
 /// The outgoing queue of a page.
 #[derive(Debug, Default)]
-pub(crate) struct Mailbox(Mutex<Waiting>);
+pub(crate) struct Mailbox(Mutex<MailboxState>);
 
 #[derive(Debug, Default)]
-struct Waiting {
+struct MailboxState {
     messages: VecDeque<Arc<str>>,
     frame: Option<Vec<u8>>,
     is_closed: bool,

@@ -29,7 +29,7 @@ mod names;
 mod request;
 mod server;
 
-pub use board::{Company, LiveView, OwnerRequests, ShowEnd};
+pub use board::{BoardUsers, LiveView, OwnerRequests, ShowEnd};
 pub use control::TimeControl;
 pub use server::{ListenError, Server};
 

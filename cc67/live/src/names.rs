@@ -22,7 +22,7 @@ const FILES: usize = 100;
 
 /// A bit that the programs use.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Used {
+pub(crate) struct UsedBit {
     /// The macro that names it.
     pub(crate) name: Option<String>,
     /// True if a program reads it.
@@ -34,7 +34,7 @@ pub(crate) struct Used {
 }
 
 /// Names the unnamed bits after the first of a group, at most as many as there are axes.
-pub(crate) fn name_groups(bits: &mut BTreeMap<Bit, Used>) {
+pub(crate) fn name_groups(bits: &mut BTreeMap<Bit, UsedBit>) {
     let bases = bits.iter().filter(|(_, used)| used.is_base);
     let bases: Vec<_> = bases.filter_map(|(bit, used)| Some((*bit, used.name.clone()?))).collect();
     for (first, name) in bases {
@@ -87,11 +87,11 @@ pub(crate) fn decoded(bytes: &[u8]) -> String {
 }
 
 /// The bits used by some sources.
-pub(crate) fn bits_of(texts: &[String]) -> BTreeMap<Bit, Used> {
+pub(crate) fn bits_of(texts: &[String]) -> BTreeMap<Bit, UsedBit> {
     let texts: Vec<String> = texts.iter().map(|text| without_comments(text)).collect();
     let macros: BTreeMap<&str, &str> =
         texts.iter().flat_map(|text| text.lines().filter_map(defined)).collect();
-    let mut bits: BTreeMap<Bit, Used> = BTreeMap::new();
+    let mut bits: BTreeMap<Bit, UsedBit> = BTreeMap::new();
     // A bit that is both read and written has the name with which it is read.
     let accesses = [BitAccess::Read, BitAccess::Write].into_iter().flat_map(|access| {
         let rows = FIRMWARE_FUNCTIONS.iter().filter(move |row| row.attributes.bit_access == Some(access));

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use vm::interp::BytecodeEngine;
 use vm::native::{NativeEngine, SharedCode};
 
-use crate::control::{AxisField, Control, Fault, LogLine, LoggedSession, Portion, Unwritten, fields};
+use crate::control::{AxisField, Control, Fault, LogLine, LoggedSession, PortionResult, StoreError, fields};
 use crate::controller::{Controller, ControllerTerms};
 use crate::errors::{Error, ExpectationError, LinkError, RangeError, ThreadError, TrapError, input};
 use crate::program::{LinkableProgram, thread};
@@ -33,7 +33,7 @@ const LOOK: Duration = Duration::from_millis(20);
 type Column<'py> = Bound<'py, PyArray1<f64>>;
 
 /// A board, and the thread that uses it.
-struct Used {
+struct OwnedControl {
     /// The board; `None` after it is closed.
     control: Option<Box<dyn Control + Send>>,
     owner: Option<ThreadId>,
@@ -42,7 +42,7 @@ struct Used {
 /// A simulated board.
 #[pyclass(frozen)]
 pub(crate) struct Board {
-    used: Mutex<Used>,
+    used: Mutex<OwnedControl>,
     /// Name and unit of each axis.
     #[pyo3(get)]
     axes: Vec<(String, String)>,
@@ -94,11 +94,11 @@ impl Board {
     fn run_in_portions(
         &self,
         py: Python<'_>,
-        portion: impl Fn(&mut dyn Control) -> Portion + Clone + Send + 'static,
+        portion: impl Fn(&mut dyn Control) -> PortionResult + Clone + Send + 'static,
     ) -> PyResult<bool> {
         loop {
             let portion = portion.clone();
-            let Portion { is_over, is_met, fault } = self.call(py, move |control| {
+            let PortionResult { is_over, is_met, fault } = self.call(py, move |control| {
                 let begin = Instant::now();
                 loop {
                     let done = portion(control);
@@ -136,11 +136,11 @@ where
 }
 
 /// Converts the reason why a value is not stored into an exception.
-fn unwritten(reason: Unwritten) -> PyErr {
+fn unwritten(reason: StoreError) -> PyErr {
     match reason {
-        Unwritten::Wrong(error) => input(error),
-        Unwritten::TooLarge(text) => RangeError::new_err(text),
-        Unwritten::Refused(text) => Error::new_err(text),
+        StoreError::Wrong(error) => input(error),
+        StoreError::TooLarge(text) => RangeError::new_err(text),
+        StoreError::Refused(text) => Error::new_err(text),
     }
 }
 
@@ -168,7 +168,7 @@ impl Board {
             }
             _ => return Err(input(format!("engine must be \"native\" or \"bytecode\", not {engine:?}"))),
         };
-        let used = Mutex::new(Used { control: Some(control.map_err(refused)?), owner: None });
+        let used = Mutex::new(OwnedControl { control: Some(control.map_err(refused)?), owner: None });
         Ok(Self { used, axes: arranged.axes, number: NUMBERS.fetch_add(1, Ordering::Relaxed) })
     }
 
@@ -184,7 +184,7 @@ impl Board {
         let (link, mut setup) = (controller.take()?, arranged.setup);
         setup.options = link.options();
         let control = py.detach(|| link.session(setup, terms.into(), |_, _| ()).map(boxed));
-        let used = Mutex::new(Used { control: Some(control.map_err(refused)?), owner: None });
+        let used = Mutex::new(OwnedControl { control: Some(control.map_err(refused)?), owner: None });
         Ok(Self { used, axes: arranged.axes, number: NUMBERS.fetch_add(1, Ordering::Relaxed) })
     }
 

@@ -41,7 +41,7 @@ pub(crate) struct BoardArguments<'py> {
 }
 
 /// A setup, and what is known about the axes.
-pub(crate) struct Arranged {
+pub(crate) struct PreparedSetup {
     pub(crate) setup: Setup,
     /// The firmware file that is executed, started.
     pub(crate) firmware: Option<BootedFirmware>,
@@ -51,7 +51,7 @@ pub(crate) struct Arranged {
 
 impl BoardArguments<'_> {
     /// The setup that is requested.
-    pub(crate) fn arrange(self) -> PyResult<Arranged> {
+    pub(crate) fn arrange(self) -> PyResult<PreparedSetup> {
         let options =
             self.programs.first().map_or_else(Options::default, |(_, program, _)| program.options.clone());
         let board = ModelledBoard::of(options.firmware.board()).unwrap_or_default();
@@ -95,7 +95,7 @@ impl BoardArguments<'_> {
             hears_uart: true,
         };
         let firmware = self.boot.as_deref().map(boot).transpose()?;
-        Ok(Arranged { setup, firmware, axes })
+        Ok(PreparedSetup { setup, firmware, axes })
     }
 }
 

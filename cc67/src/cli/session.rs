@@ -16,7 +16,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use cc67_controller::{ControllerLink, LoadTerms, ProgramStart};
 use cc67_debug::dap::AttachPoint;
 use cc67_host::{
-    AnyTarget, Attendant, BootedFirmware, BootedTarget, End, HostError, Idle, Schedule, Session, Target,
+    AnyTarget, Attendant, BootedFirmware, BootedTarget, End, HostError, IdleWork, Schedule, Session, Target,
     UserProgram,
 };
 use compiler::firmware::Firmware;
@@ -52,12 +52,12 @@ pub(crate) struct Setup {
     code: CodeFor,
     uart: UartArguments,
     flash: Flash,
-    controller: Option<Connected>,
+    controller: Option<ConnectedController>,
 }
 
 /// A controller that answers, and the terms on which it takes programs.
 #[derive(Debug)]
-struct Connected {
+struct ConnectedController {
     connection: ControllerLink,
     terms: LoadTerms,
 }
@@ -99,7 +99,7 @@ pub(crate) trait Work {
 impl Setup {
     /// Reads what the arguments name and compiles the programs; `None` if one has errors, which have been reported.
     pub(crate) fn new<'a>(
-        started: impl Into<Started<'a>>,
+        started: impl Into<StartPlan<'a>>,
         board: &BoardArguments,
         compiler: &CompilerArguments,
     ) -> Result<Option<Self>> {
@@ -109,7 +109,7 @@ impl Setup {
             let connection = controller::connect(address, board.controller.yes)?;
             let firmware = controller::firmware(&connection, compiler.resolve()?.firmware, compiler)?;
             let setup = Self::compiled(started, board, compiler, CodeFor::Controller(firmware))?;
-            let connected = Connected { connection, terms: board.controller.terms() };
+            let connected = ConnectedController { connection, terms: board.controller.terms() };
             return Ok(setup.map(|setup| Self { controller: Some(connected), ..setup }));
         }
         let Some(file) = &board.boot else { return Self::of_model(started, board, compiler) };
@@ -120,7 +120,7 @@ impl Setup {
 
     /// Reads and compiles for the modelled firmware, also where a firmware file is named.
     pub(crate) fn of_model<'a>(
-        started: impl Into<Started<'a>>,
+        started: impl Into<StartPlan<'a>>,
         board: &BoardArguments,
         compiler: &CompilerArguments,
     ) -> Result<Option<Self>> {
@@ -129,7 +129,7 @@ impl Setup {
 
     /// Reads and compiles for a firmware that has started.
     pub(crate) fn of_firmware<'a>(
-        started: impl Into<Started<'a>>,
+        started: impl Into<StartPlan<'a>>,
         board: &BoardArguments,
         compiler: &CompilerArguments,
         firmware: &BootedFirmware,
@@ -138,7 +138,7 @@ impl Setup {
     }
 
     fn compiled<'a>(
-        started: impl Into<Started<'a>>,
+        started: impl Into<StartPlan<'a>>,
         board: &BoardArguments,
         compiler: &CompilerArguments,
         code: CodeFor,
@@ -227,7 +227,7 @@ impl Setup {
     pub(crate) fn rig_of_any(mut self) -> Result<BoardSession<AnyTarget>> {
         let controller = self.controller.take();
         self.rig_with(|session, code| match (code, controller) {
-            (_, Some(Connected { connection, terms })) => {
+            (_, Some(ConnectedController { connection, terms })) => {
                 Ok(connection.session(session, terms, controller::progress())?.on_any())
             }
             (CodeFor::Firmware(firmware), None) => session.session_on_any(Some(firmware)),
@@ -260,7 +260,7 @@ impl Setup {
     /// The board for a debugger, on the engine that it can hold; on a connected controller the programs are loaded and
     /// not started.
     pub(crate) fn for_debugger(mut self) -> Result<Session<AnyTarget>> {
-        if let Some(Connected { terms, .. }) = &mut self.controller {
+        if let Some(ConnectedController { terms, .. }) = &mut self.controller {
             (terms.start, terms.has_monitor) = (ProgramStart::ByCall, true);
         }
         if self.uart.uart.is_some() || self.uart.uart_output.is_some() {
@@ -273,7 +273,7 @@ impl Setup {
 
     /// Prepares for a recording: on a connected controller programs start when it has begun.
     pub(crate) fn recorded(mut self) -> Self {
-        if let Some(Connected { terms, .. }) = &mut self.controller {
+        if let Some(ConnectedController { terms, .. }) = &mut self.controller {
             (terms.start, terms.has_monitor) = (ProgramStart::WithTime, true);
         }
         self
@@ -294,12 +294,12 @@ pub(crate) struct PreparedBoard {
 impl PreparedBoard {
     /// Reads what the arguments name and compiles the programs; `None` if one has errors, which have been reported.
     pub(crate) fn read<'a>(
-        started: impl Into<Started<'a>>,
+        started: impl Into<StartPlan<'a>>,
         board: &BoardArguments,
         compiler: &CompilerArguments,
         mut options: Options,
     ) -> Result<Option<Self>> {
-        let Started { programs, first: before } = started.into();
+        let StartPlan { programs, first: before } = started.into();
         let files = assign(&[programs, before, &board.load].concat())?;
         let before = files.get(programs.len()..programs.len() + before.len()).unwrap_or_default();
         let mut machine_file = board.machine_file(options.firmware.board())?;
@@ -378,20 +378,20 @@ fn modelled(options: &Options) -> Result<ModelledBoard> {
 
 /// Programs that start, and those that run to their end before.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Started<'a> {
+pub(crate) struct StartPlan<'a> {
     /// Programs that start together.
     pub(crate) programs: &'a [OsString],
     /// Programs that run to their end before, in turn.
     pub(crate) first: &'a [OsString],
 }
 
-impl<'a> From<&'a [OsString]> for Started<'a> {
+impl<'a> From<&'a [OsString]> for StartPlan<'a> {
     fn from(programs: &'a [OsString]) -> Self {
         Self { programs, first: &[] }
     }
 }
 
-impl<'a> From<&'a Vec<OsString>> for Started<'a> {
+impl<'a> From<&'a Vec<OsString>> for StartPlan<'a> {
     fn from(programs: &'a Vec<OsString>) -> Self {
         Self { programs, first: &[] }
     }
@@ -482,7 +482,12 @@ impl<T: Target> BoardSession<T> {
     }
 
     /// Advances the board with an attendant that may stop it; `idle` is called meanwhile.
-    pub(crate) fn advance_attended(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event), idle: Idle<'_, T>) {
+    pub(crate) fn advance_attended(
+        &mut self,
+        limit: Ticks,
+        sink: &mut dyn FnMut(Event),
+        idle: IdleWork<'_, T>,
+    ) {
         let attendant = &mut self.attendant;
         let mut held = self.flash.held();
         let pass = &mut |event| held.pass(event, sink);

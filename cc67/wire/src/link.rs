@@ -30,14 +30,14 @@ pub(crate) enum Outgoing {
     /// Bytes for the board.
     Bytes(Vec<u8>),
     /// Takes the token of a shared board, with attempts until the given time.
-    Claim(Instant, Sender<Claimed>),
+    Claim(Instant, Sender<ClaimResult>),
     /// Releases the token.
     Release,
 }
 
 /// The result of taking the token of a shared board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Claimed {
+pub(crate) enum ClaimResult {
     Taken,
     InUse,
     NotConnected,
@@ -56,7 +56,7 @@ pub struct BoardLink {
 }
 
 /// The ends of a link that its threads use.
-pub(crate) struct Ends {
+pub(crate) struct LinkEnds {
     pub(crate) received: Sender<Vec<u8>>,
     pub(crate) requests: Receiver<Outgoing>,
     pub(crate) unwritten: Arc<AtomicUsize>,
@@ -72,7 +72,7 @@ impl BoardLink {
         writer: impl Write + Send + 'static,
     ) -> Self {
         let (link, ends) = Self::with_ends(place.into(), false);
-        let Ends { received, requests, unwritten, is_closed } = ends;
+        let LinkEnds { received, requests, unwritten, is_closed } = ends;
         let is_over = Arc::clone(&is_closed);
         thread::spawn(move || read_all(reader, &received, &is_over));
         thread::spawn(move || write_all(writer, &requests, &unwritten, &is_closed));
@@ -80,12 +80,16 @@ impl BoardLink {
     }
 
     /// Creates a link whose other ends are served by a transport.
-    pub(crate) fn with_ends(place: String, is_shared: bool) -> (Self, Ends) {
+    pub(crate) fn with_ends(place: String, is_shared: bool) -> (Self, LinkEnds) {
         let (received, incoming) = channel();
         let (outgoing, requests) = channel();
         let (unwritten, is_closed) = (Arc::<AtomicUsize>::default(), Arc::<AtomicBool>::default());
-        let ends =
-            Ends { received, requests, unwritten: Arc::clone(&unwritten), is_closed: Arc::clone(&is_closed) };
+        let ends = LinkEnds {
+            received,
+            requests,
+            unwritten: Arc::clone(&unwritten),
+            is_closed: Arc::clone(&is_closed),
+        };
         (Self { place, incoming, outgoing, unwritten, is_closed, is_shared }, ends)
     }
 
@@ -143,11 +147,11 @@ impl BoardLink {
         let (answer, inbox) = channel();
         self.outgoing.send(Outgoing::Claim(now() + within, answer)).map_err(|_| self.lost())?;
         match inbox.recv_timeout(within + Duration::from_secs(1)) {
-            Ok(Claimed::Taken) => Ok(()),
-            Ok(Claimed::InUse) | Err(RecvTimeoutError::Timeout) => {
+            Ok(ClaimResult::Taken) => Ok(()),
+            Ok(ClaimResult::InUse) | Err(RecvTimeoutError::Timeout) => {
                 Err(WireError::InUse { place: self.place.clone(), seconds: within.as_secs_f64() })
             }
-            Ok(Claimed::NotConnected) | Err(RecvTimeoutError::Disconnected) => Err(self.lost()),
+            Ok(ClaimResult::NotConnected) | Err(RecvTimeoutError::Disconnected) => Err(self.lost()),
         }
     }
 
@@ -216,7 +220,7 @@ fn write_all(
             Ok(Outgoing::Bytes(bytes)) => bytes,
             Ok(Outgoing::Claim(_, answer)) => {
                 // The requester may have given up.
-                let _ = answer.send(Claimed::Taken);
+                let _ = answer.send(ClaimResult::Taken);
                 continue;
             }
             Ok(Outgoing::Release) | Err(RecvTimeoutError::Timeout) => continue,

@@ -3,7 +3,7 @@
 mod followed;
 mod power;
 
-pub use followed::{ProgramCall, ProgramPacket, Ran, Reached};
+pub use followed::{ProgramCall, ProgramPacket, RunOutcome, StopPosition};
 pub use power::FlashError;
 
 use std::sync::Arc;
@@ -55,7 +55,7 @@ pub struct ProcessorState {
 
 /// The reason why the board does not run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Halted {
+pub enum HaltError {
     /// The firmware crashed.
     #[error("{0}")]
     Crashed(Box<Crash>),
@@ -201,41 +201,41 @@ impl<A: ExternalHardware> BootedBoard<A> {
     ///
     /// # Errors
     /// The firmware crashed; the board no longer runs.
-    pub fn run_to(&mut self, cycle: u64) -> Result<(), Halted> {
-        while self.run_to_stop(cycle)? == Ran::ToStop {}
+    pub fn run_to(&mut self, cycle: u64) -> Result<(), HaltError> {
+        while self.run_to_stop(cycle)? == RunOutcome::ToStop {}
         Ok(())
     }
 
     /// Runs to `cycle`, to a stop, or until a device requests a stop.
-    fn run_events(&mut self, cycle: u64) -> Result<Ran, Halted> {
+    fn run_events(&mut self, cycle: u64) -> Result<RunOutcome, HaltError> {
         if let Some(crash) = &self.crash {
-            return Err(Halted::Crashed(crash.clone()));
+            return Err(HaltError::Crashed(crash.clone()));
         }
         let next = self.hardware.timer.next_match();
         if next <= self.cycle() {
             self.tick();
-            return Ok(Ran::Through);
+            return Ok(RunOutcome::Through);
         }
         if self.core.state.has_timer_flag() {
             if self.core.state.is_interruptible() {
                 self.core.state.take_timer_interrupt(OVERHEAD);
-                return Ok(Ran::Through);
+                return Ok(RunOutcome::Through);
             }
             if self.cycle() - self.waits_since > LONGEST_SHADOW {
                 return Err(self.crash("it has not taken an interrupt for 0.2 s".to_owned()));
             }
         }
         match self.execute_to(cycle.min(next)) {
-            Halt::Preempted => Ok(Ran::Through),
-            Halt::Stopped => Ok(Ran::ToStop),
+            Halt::Preempted => Ok(RunOutcome::Through),
+            Halt::Stopped => Ok(RunOutcome::ToStop),
             Halt::Left(0) => {
                 self.restart();
-                Ok(Ran::Through)
+                Ok(RunOutcome::Through)
             }
             Halt::Left(address) => match self.file.rom_function(address) {
                 Some(function) => {
                     self.call_rom(function);
-                    Ok(Ran::Through)
+                    Ok(RunOutcome::Through)
                 }
                 None if address < ROM_SIZE => Err(self.crash(format!(
                     "it went to 0x{address:08X} in the processor's ROM, where the firmware file names no function"
@@ -282,7 +282,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
     }
 
     /// Records a crash: the board no longer runs.
-    fn crash(&mut self, reason: String) -> Halted {
+    fn crash(&mut self, reason: String) -> HaltError {
         let pc = self.core.state.pc();
         let thread = self.file.address("CurrentThread").map(|at| self.hardware.memory.peek::<u32>(at));
         let crash = Box::new(Crash {
@@ -294,7 +294,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
             scene: self.core.scene(pc, |at| self.hardware.word(at)),
         });
         self.crash = Some(crash.clone());
-        Halted::Crashed(crash)
+        HaltError::Crashed(crash)
     }
 
     /// Sends bytes from the PC.
@@ -375,7 +375,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
     ///
     /// # Errors
     /// The firmware crashed.
-    pub fn execute_together(&mut self, threads: &[ThreadId]) -> Result<(), Halted> {
+    pub fn execute_together(&mut self, threads: &[ThreadId]) -> Result<(), HaltError> {
         let Some(at) = self.file.address("ThreadActive") else {
             threads.iter().for_each(|thread| self.execute(*thread));
             return Ok(());

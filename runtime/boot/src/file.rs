@@ -55,7 +55,7 @@ pub enum FirmwareError {
 
 /// A loaded section.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Loaded {
+struct LoadedSection {
     address: u32,
     /// The bytes; `None` to fill it with 0.
     bytes: Option<Vec<u8>>,
@@ -65,7 +65,7 @@ struct Loaded {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FirmwareFile {
     entry: u32,
-    sections: Vec<Loaded>,
+    sections: Vec<LoadedSection>,
     /// Names as programs write them.
     symbols: BTreeMap<String, u32>,
     /// Functions by address.
@@ -161,7 +161,7 @@ fn is_inside(region: &Region, address: u32, size: u64) -> bool {
     offset + size <= u64::from(region.size)
 }
 
-fn sections(image: &Image) -> Result<Vec<Loaded>, FirmwareError> {
+fn sections(image: &Image) -> Result<Vec<LoadedSection>, FirmwareError> {
     let is_loaded = |flags: SectionFlags| flags.0 & LEFT_OUT == 0 && flags.0 & LOADED != 0;
     let mut loaded = Vec::new();
     for section in image.sections.iter().filter(|one| one.size() != 0 && is_loaded(one.flags)) {
@@ -173,7 +173,7 @@ fn sections(image: &Image) -> Result<Vec<Loaded>, FirmwareError> {
             Contents::Data(bytes) => Some(bytes.clone()),
             Contents::Uninitialised(_) => None,
         };
-        loaded.push(Loaded { address, bytes });
+        loaded.push(LoadedSection { address, bytes });
     }
     Ok(loaded)
 }
@@ -198,7 +198,7 @@ fn symbols(image: &Image) -> BTreeMap<String, u32> {
 }
 
 /// The version text of a firmware; empty if it has none.
-fn version_text(symbols: &BTreeMap<String, u32>, sections: &[Loaded]) -> String {
+fn version_text(symbols: &BTreeMap<String, u32>, sections: &[LoadedSection]) -> String {
     let Some(at) = symbols.get(VERSION) else { return String::new() };
     let holder = sections.iter().find_map(|one| {
         let bytes = one.bytes.as_ref()?;

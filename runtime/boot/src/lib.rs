@@ -35,9 +35,10 @@ mod timer;
 mod window;
 
 pub use board::{
-    BootedBoard, BootedSnapshot, FlashError, Halted, ProcessorState, ProgramCall, ProgramPacket, Ran, Reached,
+    BootedBoard, BootedSnapshot, FlashError, HaltError, ProcessorState, ProgramCall, ProgramPacket,
+    RunOutcome, StopPosition,
 };
 pub use crash::Crash;
 pub use external::{ExternalHardware, TimerMatch};
 pub use file::{FirmwareError, FirmwareFile};
-pub use sent::{Sent, SentLine};
+pub use sent::{SentKind, SentLine};

@@ -8,7 +8,7 @@ const ABORTED: &[u8] = b"\x1bC\r";
 
 /// The kind of a sent line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sent {
+pub enum SentKind {
     /// Console text.
     Console,
     /// A reply to a command.
@@ -25,7 +25,7 @@ pub struct SentLine {
     /// The cycle of its first byte, since power-up.
     pub cycle: u64,
     /// The kind of line.
-    pub kind: Sent,
+    pub kind: SentKind,
     /// Its text.
     pub text: Vec<u8>,
 }
@@ -56,7 +56,7 @@ impl SentLines {
     pub(crate) fn take(&mut self, bytes: Vec<(u64, u8)>) -> Vec<SentLine> {
         // No byte follows what looks like the answer to an abort.
         if bytes.is_empty() && self.unfinished == ABORTED {
-            self.end(Sent::Aborted, 0);
+            self.end(SentKind::Aborted, 0);
         }
         for (cycle, byte) in bytes {
             if let Some(wire) = &mut self.wire {
@@ -69,13 +69,13 @@ impl SentLines {
 
     fn byte(&mut self, cycle: u64, byte: u8) {
         if byte != b'\n' && self.unfinished == ABORTED {
-            self.end(Sent::Aborted, 0);
+            self.end(SentKind::Aborted, 0);
         }
         if byte == b'\n' {
             match self.unfinished[..] {
-                [ESCAPE, 1..=7, ..] => self.end(Sent::Request, 1),
-                [ESCAPE, ..] => self.end(Sent::Console, 1),
-                _ => self.end(Sent::Reply, 0),
+                [ESCAPE, 1..=7, ..] => self.end(SentKind::Request, 1),
+                [ESCAPE, ..] => self.end(SentKind::Console, 1),
+                _ => self.end(SentKind::Reply, 0),
             }
             return;
         }
@@ -86,10 +86,10 @@ impl SentLines {
     }
 
     /// Completes the line; `from` is the beginning of its text.
-    fn end(&mut self, kind: Sent, from: usize) {
+    fn end(&mut self, kind: SentKind, from: usize) {
         let line = std::mem::take(&mut self.unfinished);
         let text = line.strip_suffix(b"\r").unwrap_or(&line);
-        let text = if kind == Sent::Aborted { &[] } else { text.get(from..).unwrap_or_default() };
+        let text = if kind == SentKind::Aborted { &[] } else { text.get(from..).unwrap_or_default() };
         self.lines.push(SentLine { cycle: self.first, kind, text: text.to_vec() });
     }
 }
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     /// The lines of a stream that arrives in chunks of one size and then ends.
-    fn lines(stream: &[u8], size: usize) -> Vec<(Sent, String)> {
+    fn lines(stream: &[u8], size: usize) -> Vec<(SentKind, String)> {
         let mut sent = SentLines::default();
         sent.tap();
         let pieces = stream.chunks(size).chain([&[][..]]);
@@ -114,12 +114,12 @@ mod tests {
     fn the_answer_to_an_abort_is_not_a_console_line_with_the_same_letter() {
         let stream = b"1\r\n\x1bC\r\x1bC\r\n\x1b\x04a.txt\r\n\r\n\x1bC\r";
         let expect = [
-            (Sent::Reply, "1"),
-            (Sent::Aborted, ""),
-            (Sent::Console, "C"),
-            (Sent::Request, "\x04a.txt"),
-            (Sent::Reply, ""),
-            (Sent::Aborted, ""),
+            (SentKind::Reply, "1"),
+            (SentKind::Aborted, ""),
+            (SentKind::Console, "C"),
+            (SentKind::Request, "\x04a.txt"),
+            (SentKind::Reply, ""),
+            (SentKind::Aborted, ""),
         ];
         for size in [1, 2, 3, 100] {
             let found = lines(stream, size);

@@ -47,7 +47,7 @@ pub enum Change {
 
 /// The progress of a command sequence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Heard {
+enum CommandState {
     /// Nothing was written.
     #[default]
     Idle,
@@ -68,7 +68,7 @@ enum Heard {
 /// The chip.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Chip {
-    step: Heard,
+    step: CommandState,
     identifies: bool,
     busy_until: Cycles,
     toggle: u16,
@@ -96,31 +96,31 @@ impl Chip {
         change
     }
 
-    fn step(&mut self, offset: u32, value: u16) -> (Heard, Option<Change>) {
+    fn step(&mut self, offset: u32, value: u16) -> (CommandState, Option<Change>) {
         let inside = offset & (FLASH.size - 1);
         let step = match (self.step, offset, value & 0xFF) {
-            (Heard::Program, ..) => {
-                return (Heard::Idle, Some(Change::Program { offset: inside, mask: value }));
+            (CommandState::Program, ..) => {
+                return (CommandState::Idle, Some(Change::Program { offset: inside, mask: value }));
             }
-            (Heard::EraseSecond, _, 0x50 | 0x30) => {
-                return (Heard::Idle, Some(Change::Erase { offset: inside & !(BLOCK - 1) }));
+            (CommandState::EraseSecond, _, 0x50 | 0x30) => {
+                return (CommandState::Idle, Some(Change::Erase { offset: inside & !(BLOCK - 1) }));
             }
-            (Heard::Idle, FIRST, 0xAA) => Heard::First,
-            (Heard::First, SECOND, 0x55) => Heard::Second,
-            (Heard::Second, FIRST, 0x90) => self.identify(true),
-            (Heard::Second, FIRST, 0xF0) => self.identify(false),
-            (Heard::Second, FIRST, 0x80) => Heard::Erase,
-            (Heard::Second, FIRST, 0xA0) => Heard::Program,
-            (Heard::Erase, FIRST, 0xAA) => Heard::EraseFirst,
-            (Heard::EraseFirst, SECOND, 0x55) => Heard::EraseSecond,
-            _ => Heard::Idle,
+            (CommandState::Idle, FIRST, 0xAA) => CommandState::First,
+            (CommandState::First, SECOND, 0x55) => CommandState::Second,
+            (CommandState::Second, FIRST, 0x90) => self.identify(true),
+            (CommandState::Second, FIRST, 0xF0) => self.identify(false),
+            (CommandState::Second, FIRST, 0x80) => CommandState::Erase,
+            (CommandState::Second, FIRST, 0xA0) => CommandState::Program,
+            (CommandState::Erase, FIRST, 0xAA) => CommandState::EraseFirst,
+            (CommandState::EraseFirst, SECOND, 0x55) => CommandState::EraseSecond,
+            _ => CommandState::Idle,
         };
         (step, None)
     }
 
-    const fn identify(&mut self, whether: bool) -> Heard {
+    const fn identify(&mut self, whether: bool) -> CommandState {
         self.identifies = whether;
-        Heard::Idle
+        CommandState::Idle
     }
 }
 

@@ -5,25 +5,25 @@ use kmotiondef::structs::Persist;
 use kmotiondef::variables::{HOST_STATUS, PERSIST};
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::engine::Engine;
-use vm::loaded::Loaded as Code;
+use vm::loaded::LoadedCode as Code;
 use vm::memory::GuestMemory;
 
-use super::{Board, Loaded};
+use super::{Board, LoadedImage};
 use crate::board::code;
-use crate::board::power_up::{self, Before};
+use crate::board::power_up::{self, InitialMemory};
 use crate::io::flash;
 use crate::out::Message;
 use crate::servo::independent;
 use crate::servo::moves::Planner;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 impl<E: Engine> Board<E> {
     /// Fills memory from flash, or with the power-up values if nothing was flashed, and starts the programs that are
     /// set to start by themselves. From then on a board that `is_strict` shows one bank of flash.
     pub(super) fn power_up(&mut self, is_strict: bool) {
         let memory = self.machine.memory_mut();
-        let before = if flash::is_saved(memory) { Before::Flashed } else { Before::Zero };
-        if before == Before::Flashed {
+        let before = if flash::is_saved(memory) { InitialMemory::Flashed } else { InitialMemory::Zero };
+        if before == InitialMemory::Flashed {
             flash::restore(memory);
         }
         let board = self.level().board();
@@ -32,7 +32,7 @@ impl<E: Engine> Board<E> {
         if self.machine.firmware().parts.servo.planner == Planner::Direct {
             independent::prepare(self.machine.memory_mut());
         }
-        if before == Before::Flashed {
+        if before == InitialMemory::Flashed {
             ThreadId::all().for_each(|thread| self.load_flashed(thread));
             let starts = self.memory().get(PERSIST.field(Persist::RUN_ON_START_UP));
             for thread in ThreadId::all().filter(|thread| starts & 1 << thread.get() != 0) {
@@ -69,7 +69,7 @@ impl<E: Engine> Board<E> {
                 self.hand_over(thread, code, GuestAddr::new(entry));
                 let extent = text.start.get()..text.end.get();
                 let debug = self.programs.flashed[thread.index()].clone().unwrap_or_default();
-                self.programs_mut().loaded[thread.index()] = Some(Loaded { debug, extent });
+                self.programs_mut().loaded[thread.index()] = Some(LoadedImage { debug, extent });
             }
             Err(error) => {
                 let (kernel, context) = self.machine.firmware_mut();
@@ -93,7 +93,7 @@ impl<E: Engine> Board<E> {
             flash::save(memory, |thread| texts.get(thread.index()).cloned().flatten());
         });
         let programs = self.programs_mut();
-        let known = |loaded: &Option<Loaded>| loaded.as_ref().map(|loaded| loaded.debug.clone());
+        let known = |loaded: &Option<LoadedImage>| loaded.as_ref().map(|loaded| loaded.debug.clone());
         programs.flashed = programs.loaded.each_ref().map(known);
     }
 

@@ -3,7 +3,7 @@
 use kmotiondef::GuestAddr;
 use kmotiondef::firmware::Function;
 use vm::dsp;
-use vm::loaded::{Image, Loaded as Code};
+use vm::loaded::{Image, LoadedCode as Code};
 use vm::verify::{VerifyError, VerifyErrorKind, verify_image};
 
 use crate::firmware::level::ModelledBoard;

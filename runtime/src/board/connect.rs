@@ -14,7 +14,7 @@ use crate::machine::description::{Analog, AnalogSource, Axis, Connection, Encode
 use crate::machine::wiring::Wiring;
 use crate::machine::{Mechanics, Notes, Plant, connect_snapamp};
 use crate::out::Message;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use crate::world::outside::wire::Wire;
 
 /// Connects a machine to the board at power-up.

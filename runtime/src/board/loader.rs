@@ -1,7 +1,7 @@
 //! Loads the bytes of an image as a program of a thread; an image is refused before anything changes.
 //!
 //! [`prepare`] checks everything that can be wrong with an image (`coff.md` sections 4 and 9, design.md D7) and yields
-//! a [`Prepared`] image, which the board can take without failing. The vendor's own loader checks almost nothing; with
+//! a [`LoadableImage`], which the board can take without failing. The vendor's own loader checks almost nothing; with
 //! it, a mistake overwrites another thread's program.
 
 use std::ops::Range;
@@ -10,7 +10,7 @@ use coff::{Contents, FileFlags, Image, Line, Section, SectionFlags, SectionNumbe
 use kmotiondef::boards::{TargetBoard, boards};
 use kmotiondef::map::ProgramSpaces;
 use kmotiondef::{GuestAddr, ThreadId};
-use vm::loaded::Loaded as Code;
+use vm::loaded::LoadedCode as Code;
 use vm::verify::VerifyError;
 
 use crate::board::code;
@@ -19,7 +19,7 @@ use crate::firmware::level::ModelledBoard;
 
 /// An image that can be loaded without failing.
 #[derive(Debug)]
-pub struct Prepared {
+pub struct LoadableImage {
     /// The code: verified bytecode, or an image of the real processor.
     pub code: Code,
     /// The address at which a thread begins to execute.
@@ -164,7 +164,7 @@ pub fn prepare(
     thread: ThreadId,
     board: &ModelledBoard,
     holds: impl Fn(ThreadId) -> bool,
-) -> Result<Prepared, LoadError> {
+) -> Result<LoadableImage, LoadError> {
     let image = Image::read(bytes).map_err(LoadError::NotAnImage)?;
     check_origin(&image, board.board())?;
     let header = image.program.ok_or(LoadError::Missing("entry point"))?;
@@ -182,7 +182,7 @@ pub fn prepare(
         return Err(LoadError::Entry(entry));
     }
     let sections = image.sections.iter().filter(|section| is_loaded(section)).map(place).collect();
-    Ok(Prepared { code, entry, sections, debug: debug(&image, spaces) })
+    Ok(LoadableImage { code, entry, sections, debug: debug(&image, spaces) })
 }
 
 fn check_origin(image: &Image, board: &TargetBoard) -> Result<(), LoadError> {

@@ -26,10 +26,10 @@ use kmotiondef::structs::Persist;
 use kmotiondef::timing::Timing;
 use kmotiondef::variables::{PERSIST, cell_name};
 use kmotiondef::{Axes, Cycles, GuestAddr, ThreadId, Ticks};
-use vm::engine::{CallEnd, ContextId, Engine, Observed, Preemption};
+use vm::engine::{CallEnd, ContextId, Engine, ObservedAccesses, Preemption};
 use vm::interp::BytecodeEngine;
 use vm::machine::{Config as MachineConfig, Machine};
-use vm::memory::{Faults, GuestMemory};
+use vm::memory::{FaultPolicy, GuestMemory};
 use vm::thread::ThreadState;
 
 use crate::board::debug::{CodeDetail, DebugInfo};
@@ -41,7 +41,7 @@ use crate::kernel::Kernel;
 use crate::out::{Event, EventKind, Message, Remark, Request, Speaker};
 use crate::pc::Answers;
 use crate::pc::files::{HostFiles, NoFiles};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Settings of a board.
 #[derive(Debug)]
@@ -100,23 +100,23 @@ pub enum RunEnd {
 
 /// Facts about a loaded image.
 #[derive(Clone, Debug)]
-struct Loaded {
+struct LoadedImage {
     debug: DebugInfo,
     /// Addresses from its first to after its last byte.
     extent: Range<u32>,
 }
 
 /// An image that a stimulus may load, and further details about its code.
-type Offered = (Vec<u8>, Arc<[CodeDetail]>);
+type OfferedImage = (Vec<u8>, Arc<[CodeDetail]>);
 
 /// Facts about the programs on the board.
 #[derive(Clone, Debug, Default)]
 struct Programs {
-    loaded: [Option<Loaded>; ThreadId::MAX as usize],
+    loaded: [Option<LoadedImage>; ThreadId::MAX as usize],
     /// Debug information of the programs in flash.
     flashed: [Option<DebugInfo>; ThreadId::MAX as usize],
     /// Images that a stimulus may load, by their thread and by their name in the stimulus.
-    offered: BTreeMap<(ThreadId, Arc<str>), Offered>,
+    offered: BTreeMap<(ThreadId, Arc<str>), OfferedImage>,
 }
 
 /// A simulated board.
@@ -147,7 +147,7 @@ impl<E: Engine> Board<E> {
         kernel.parts.pc.host.connect(config.host && connected.pc.is_connected);
         kernel.parts.pc.host.answer_with(config.answers.unwrap_or_else(|| connected.pc.answers.clone()));
         kernel.parts.timing = config.timing;
-        kernel.parts.races = (config.machine.observed != Observed::None).then(Box::default);
+        kernel.parts.races = (config.machine.observed != ObservedAccesses::None).then(Box::default);
         kernel.parts.switches =
             (!config.switches.is_empty()).then(|| Box::new(Switches::new(config.switches)));
         kernel.parts.calls.are_split = config.machine.preemption == Preemption::Instructions;
@@ -156,7 +156,7 @@ impl<E: Engine> Board<E> {
         let settings = MachineConfig {
             servo: config.machine.servo.or(servo),
             strict_stack: config.machine.strict_stack || connected.cpu.strict_stack,
-            faults: if connected.cpu.board_faults { Faults::Board } else { config.machine.faults },
+            faults: if connected.cpu.board_faults { FaultPolicy::Board } else { config.machine.faults },
             ..config.machine
         };
         let machine = Machine::with_engine(kernel, settings, engine);

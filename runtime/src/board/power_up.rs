@@ -3,7 +3,7 @@
 use chips::kanalog::{ADC_CHANNELS, ZERO};
 use kmotiondef::boards::TargetBoard;
 use kmotiondef::limits::N_CHANNELS;
-use kmotiondef::start::{Start, Stored};
+use kmotiondef::start::{StartValue, StoreCondition};
 use kmotiondef::structs::{Chan, STRUCTURES, Structure, StructureField};
 use kmotiondef::variables::{
     ADC_BUFFER_IN, FIRMWARE_VARIABLES, FirmwareVariable, VERSION_AND_BUILD_TIME, trip_coeffs,
@@ -12,28 +12,28 @@ use kmotiondef::{CType, GuestAddr};
 use vm::memory::GuestMemory;
 
 use crate::io::kanalog::set_conversion;
-use crate::views::{Typed, chan};
+use crate::views::{TypedAccess, chan};
 
 /// The contents of memory before it is filled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Before {
+pub(crate) enum InitialMemory {
     /// All zero.
     Zero,
     /// The flashed contents; some values are kept from them.
     Flashed,
 }
 
-impl Before {
+impl InitialMemory {
     /// Returns whether a value is stored over these contents.
-    fn takes(self, stored: Stored) -> bool {
-        self == Self::Zero || stored == Stored::Always
+    fn takes(self, stored: StoreCondition) -> bool {
+        self == Self::Zero || stored == StoreCondition::Always
     }
 }
 
 /// Stores the power-up value of every firmware variable.
 ///
 /// Addresses are those of the tables; they are mapped when a value is stored.
-pub(crate) fn fill(memory: &mut GuestMemory, version: &str, before: Before) {
+pub(crate) fn fill(memory: &mut GuestMemory, version: &str, before: InitialMemory) {
     for variable in FIRMWARE_VARIABLES {
         if !is_narrow(memory, variable) {
             start_variable(memory, variable, before);
@@ -75,8 +75,8 @@ fn is_narrow(memory: &GuestMemory, variable: &FirmwareVariable) -> bool {
     memory.has_other_map() && variable.address == ADC_BUFFER_IN.address()
 }
 
-fn start_variable(memory: &mut GuestMemory, variable: &FirmwareVariable, before: Before) {
-    if variable.start == Start::Fields {
+fn start_variable(memory: &mut GuestMemory, variable: &FirmwareVariable, before: InitialMemory) {
+    if variable.start == StartValue::Fields {
         return start_structures(memory, variable.address, variable.ty, before);
     }
     if before.takes(variable.stored) {
@@ -86,15 +86,15 @@ fn start_variable(memory: &mut GuestMemory, variable: &FirmwareVariable, before:
 }
 
 /// Clears the space of a value, flashed contents included.
-fn clear(memory: &mut GuestMemory, address: GuestAddr, size: u32, before: Before) {
-    if before == Before::Flashed {
+fn clear(memory: &mut GuestMemory, address: GuestAddr, size: u32, before: InitialMemory) {
+    if before == InitialMemory::Flashed {
         let cleared = memory.poke_bytes(memory.place_of(address), &vec![0; size as usize]);
         debug_assert!(cleared.is_ok(), "variables are mapped");
     }
 }
 
 /// Stores the power-up values of a structure, or of each of an array of them.
-fn start_structures(memory: &mut GuestMemory, address: GuestAddr, ty: CType, before: Before) {
+fn start_structures(memory: &mut GuestMemory, address: GuestAddr, ty: CType, before: InitialMemory) {
     match ty.resolved() {
         CType::Array(element, count) => {
             let Some(structure) = structure(*element) else { return };
@@ -121,11 +121,11 @@ fn start_structure(
     memory: &mut GuestMemory,
     address: GuestAddr,
     structure: &Structure,
-    (index, before): (u32, Before),
+    (index, before): (u32, InitialMemory),
 ) {
     for StructureField { offset, size, start, stored, ty, .. } in structure.fields {
         let address = address.offset(*offset);
-        if *start == Start::Fields {
+        if *start == StartValue::Fields {
             start_structures(memory, address, *ty, before);
         } else if before.takes(*stored) {
             clear(memory, address, *size, before);
@@ -135,30 +135,30 @@ fn start_structure(
 }
 
 /// Stores one value in memory that is still zero.
-fn store(memory: &mut GuestMemory, address: GuestAddr, start: Start, ty: CType, index: u32) {
+fn store(memory: &mut GuestMemory, address: GuestAddr, start: StartValue, ty: CType, index: u32) {
     let address = memory.place_of(address);
     match start {
-        Start::Zero | Start::Fields => {}
-        Start::Int(value) => memory.poke(address, value),
-        Start::Each(value) => {
+        StartValue::Zero | StartValue::Fields => {}
+        StartValue::Int(value) => memory.poke(address, value),
+        StartValue::Each(value) => {
             if let CType::Array(element, count) = ty.resolved() {
                 each(memory, address, *element, count, value);
             }
         }
-        Start::Float(value) => memory.poke(address, value),
-        Start::Double(value) => memory.poke(address, value),
-        Start::Text(text) => {
+        StartValue::Float(value) => memory.poke(address, value),
+        StartValue::Double(value) => memory.poke(address, value),
+        StartValue::Text(text) => {
             for (offset, byte) in (0..).zip(text.bytes()) {
                 memory.poke(address.offset(offset), byte);
             }
         }
-        Start::Address(value) => memory.poke(address, memory.place_of(value).get()),
-        Start::Words(words) => {
+        StartValue::Address(value) => memory.poke(address, memory.place_of(value).get()),
+        StartValue::Words(words) => {
             for (index, word) in (0..).zip(words) {
                 memory.poke(address.offset(4 * index), *word);
             }
         }
-        Start::PerAxis { first, step } => memory.poke(address, first + index * step),
+        StartValue::PerAxis { first, step } => memory.poke(address, first + index * step),
     }
 }
 
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn variables_and_fields_have_their_power_up_values() {
         let mut memory = GuestMemory::new();
-        fill(&mut memory, VERSION.trim_end(), Before::Zero);
+        fill(&mut memory, VERSION.trim_end(), InitialMemory::Zero);
         let axis = AxisId::new(3).expect("3 is an axis");
         assert_eq!(memory.get(CH3), CHAN.element(3).address());
         assert_eq!(memory.get(CS0_TIME_BASE), 9e-5);

@@ -7,19 +7,19 @@ use kmotiondef::structs::Persist;
 use kmotiondef::variables::{PERSIST, USER_CALL_BACK};
 use kmotiondef::{CodeAddr, GuestAddr, ThreadId};
 use vm::engine::Engine;
-use vm::loaded::Loaded as Code;
+use vm::loaded::LoadedCode as Code;
 use vm::program::Program;
 use vm::thread::NotLoaded;
 use vm::verify::VerifyError;
 
-use super::{Board, Loaded, Programs};
+use super::{Board, LoadedImage, Programs};
 use crate::board::code;
 use crate::board::debug::{CodeDetail, DebugInfo, ObjectInfo, SourcePlace};
 use crate::board::loader::{Fill, LoadError, PlacedSection, prepare};
-use crate::firmware::calls::Named;
+use crate::firmware::calls::NamedObject;
 use crate::firmware::level::ModelledBoard;
 use crate::out::{EventKind, Message};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 impl<E: Engine> Board<E> {
     /// Loads an image into `thread`, which is stopped first.
@@ -56,9 +56,12 @@ impl<E: Engine> Board<E> {
         let start = self.spaces().start(thread).get();
         let ends = prepared.sections.iter().map(|section| section.address.get() + section.size());
         let extent = start..ends.max().unwrap_or(start);
-        let named =
-            |object: &ObjectInfo| Named { name: object.name.clone(), start: object.start, size: object.size };
-        let objects: Arc<[Named]> = prepared.debug.objects().iter().map(named).collect();
+        let named = |object: &ObjectInfo| NamedObject {
+            name: object.name.clone(),
+            start: object.start,
+            size: object.size,
+        };
+        let objects: Arc<[NamedObject]> = prepared.debug.objects().iter().map(named).collect();
         let parts = &mut self.machine.firmware_mut().0.parts;
         if let Some(races) = &mut parts.races {
             races.load(thread, Arc::clone(&objects));
@@ -66,7 +69,7 @@ impl<E: Engine> Board<E> {
         parts.calls.notices.load(thread, objects);
         self.load_code(thread, prepared.code, prepared.entry);
         self.programs_mut().loaded[thread.index()] =
-            Some(Loaded { debug: prepared.debug.with_details(details), extent });
+            Some(LoadedImage { debug: prepared.debug.with_details(details), extent });
         Ok(())
     }
 

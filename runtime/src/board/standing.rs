@@ -6,7 +6,7 @@
 use std::fmt;
 
 use kmotiondef::bits::{BitDirection, BitKind};
-use kmotiondef::function::Polled;
+use kmotiondef::function::PolledState;
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
@@ -17,31 +17,31 @@ use vm::thread::{Progress, ThreadState};
 use vm::wake::Wake;
 
 use super::Board;
-use crate::firmware::calls::Repeated;
+use crate::firmware::calls::RepeatedCall;
 use crate::io::bits::{bit_state, range_of};
 use crate::servo::coordinated::{rate, system};
 use crate::servo::independent::{has_motion, state};
 use crate::servo::profile::Mode;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// A thread that has not ended.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StandingThread {
+pub struct UnfinishedThread {
     /// Its number.
     pub thread: ThreadId,
     /// Its state.
-    pub state: Standing,
+    pub state: ThreadActivity,
     /// The current instruction, then the calls that led to it, innermost first.
     pub calls: Vec<CodeAddr>,
     /// The last time at which it did anything other than poll and wait.
     pub since: Cycles,
     /// The values that it has polled since.
-    pub awaited: Vec<Awaited>,
+    pub awaited: Vec<AwaitedState>,
 }
 
 /// The state of a thread that has not ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Standing {
+pub enum ThreadActivity {
     /// It computes.
     Computing,
     /// It waits for an instant.
@@ -58,7 +58,7 @@ pub enum Standing {
 
 /// A state that a thread polls while it waits.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Awaited {
+pub enum AwaitedState {
     /// The level of a bit.
     Bit(Bit, bool, Source),
     /// The end of the motion of an axis, with the result of `CheckDone`.
@@ -113,7 +113,7 @@ pub enum Source {
 
 /// An axis that programs have used.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StandingAxis {
+pub struct UsedAxis {
     /// Its number.
     pub axis: AxisId,
     /// Its name in the machine file; empty if it has none.
@@ -178,23 +178,23 @@ impl fmt::Display for Reason {
 impl<E: Engine> Board<E> {
     /// The threads that have not ended, and the event for which each waits.
     #[must_use]
-    pub fn standing_threads(&self) -> Vec<StandingThread> {
+    pub fn standing_threads(&self) -> Vec<UnfinishedThread> {
         ThreadId::all().filter_map(|thread| self.standing(thread)).collect()
     }
 
-    fn standing(&self, thread: ThreadId) -> Option<StandingThread> {
+    fn standing(&self, thread: ThreadId) -> Option<UnfinishedThread> {
         let state = match *self.thread(thread) {
-            ThreadState::Active(Progress::Fresh | Progress::Going) => Standing::Computing,
-            ThreadState::Active(Progress::Waiting(Wake::At(time))) => Standing::Until(time),
-            ThreadState::Active(Progress::Waiting(Wake::NextSlice)) => Standing::Slice,
+            ThreadState::Active(Progress::Fresh | Progress::Going) => ThreadActivity::Computing,
+            ThreadState::Active(Progress::Waiting(Wake::At(time))) => ThreadActivity::Until(time),
+            ThreadState::Active(Progress::Waiting(Wake::NextSlice)) => ThreadActivity::Slice,
             ThreadState::Active(Progress::Waiting(Wake::Retry)) => {
                 let called = self.machine.firmware().parts.calls.waits.of(thread).called;
                 let (name, waits) =
                     called.map_or(("the firmware", None), |row| (row.name, row.attributes.waits));
-                Standing::Call(name, waits.unwrap_or("until the board ends the call"))
+                ThreadActivity::Call(name, waits.unwrap_or("until the board ends the call"))
             }
-            ThreadState::Active(Progress::Idle) => Standing::Idle,
-            ThreadState::Paused(_) => Standing::Paused,
+            ThreadState::Active(Progress::Idle) => ThreadActivity::Idle,
+            ThreadState::Paused(_) => ThreadActivity::Paused,
             ThreadState::Empty | ThreadState::Ready | ThreadState::Faulted(_) => return None,
         };
         let wait = self.machine.firmware().parts.calls.waits.of(thread);
@@ -205,25 +205,25 @@ impl<E: Engine> Board<E> {
             }
         }
         let calls = self.machine.backtrace(thread);
-        Some(StandingThread { thread, state, calls, since: wait.since, awaited })
+        Some(UnfinishedThread { thread, state, calls, since: wait.since, awaited })
     }
 
-    fn awaited(&self, call: &Repeated) -> Option<Awaited> {
+    fn awaited(&self, call: &RepeatedCall) -> Option<AwaitedState> {
         match call.polls {
-            Polled::Bit => {
+            PolledState::Bit => {
                 let bit = Bit::new(call.argument)?;
-                Some(Awaited::Bit(bit, self.bit(bit), self.source_of(bit, call.since)))
+                Some(AwaitedState::Bit(bit, self.bit(bit), self.source_of(bit, call.since)))
             }
-            Polled::Motion => {
+            PolledState::Motion => {
                 let axis = self.memory().axes().get(call.argument)?;
                 let is_enabled = self.memory().axis(axis, Chan::ENABLE) != 0;
                 let done = if is_enabled { i32::from(!has_motion(self.memory(), axis)) } else { -1 };
-                Some(Awaited::Motion(axis, done))
+                Some(AwaitedState::Motion(axis, done))
             }
-            Polled::Path => Some(Awaited::Path),
-            Polled::Recording => Some(Awaited::Recording),
-            Polled::Lock => Some(Awaited::Lock(self.owner(call.argument))),
-            Polled::Time => None,
+            PolledState::Path => Some(AwaitedState::Path),
+            PolledState::Recording => Some(AwaitedState::Recording),
+            PolledState::Lock => Some(AwaitedState::Lock(self.owner(call.argument))),
+            PolledState::Time => None,
         }
     }
 
@@ -268,19 +268,19 @@ impl<E: Engine> Board<E> {
 
     /// The axes that programs have used, and those that are enabled.
     #[must_use]
-    pub fn standing_axes(&self) -> Vec<StandingAxis> {
+    pub fn standing_axes(&self) -> Vec<UsedAxis> {
         let waits = &self.machine.firmware().parts.calls.waits;
         let is_enabled = |axis| self.memory().axis(axis, Chan::ENABLE) != 0;
         let used = self.memory().axes().iter().filter(|&axis| waits.has_touched(axis) || is_enabled(axis));
         used.map(|axis| self.standing_axis(axis)).collect()
     }
 
-    fn standing_axis(&self, axis: AxisId) -> StandingAxis {
+    fn standing_axis(&self, axis: AxisId) -> UsedAxis {
         let memory = self.memory();
         let is_enabled = memory.axis(axis, Chan::ENABLE) != 0;
         let velocity = if is_enabled { f64::from(memory.axis(axis, Chan::LAST_VEL)) } else { 0.0 };
         let (name, units) = self.names[axis.index()].clone();
-        StandingAxis {
+        UsedAxis {
             axis,
             name,
             units,

@@ -10,7 +10,7 @@
 
 use kmotiondef::AccessSize;
 use kmotiondef::firmware::row_named;
-use kmotiondef::function::Polled;
+use kmotiondef::function::PolledState;
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::{Chan, TripCoeff};
@@ -18,7 +18,7 @@ use kmotiondef::variables::{ADC_BUFFER_IN, CURRENT_THREAD, HOST_STATUS, KSTEP_PR
 use kmotiondef::{Axes, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use vm::firmware::{ExecutedPacket, TickContext};
 use vm::memory::GuestMemory;
-use vm::scheduler::{ThreadSet, Turn};
+use vm::scheduler::{SliceOwner, ThreadSet};
 use vm::thread::Threads;
 
 use super::machine_file::MachineFile;
@@ -29,8 +29,8 @@ use crate::machine::{COUNTS_PER_TICK, Channel, Drive};
 use crate::out::{Event, EventKind, Message, Remark, Request, Speaker};
 use crate::pc::{Pc, host};
 use crate::servo::{driven, input, plan, wired};
-use crate::views::{AxisView, Typed};
-use crate::world::stimulus::{Asker, Stimulus};
+use crate::views::{AxisView, TypedAccess};
+use crate::world::stimulus::{InputReader, Stimulus};
 use crate::world::{Moment, trace};
 use chips::fpga::register_address;
 use chips::kanalog::ADC_CHANNELS;
@@ -52,7 +52,7 @@ const INTERRUPT: Cycles = Cycles::new(2006);
 
 /// A request of a stimulus to the board.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Asked {
+pub enum StimulusRequest {
     /// The PC sends these bytes.
     Send(Vec<u8>),
     /// A program that was offered should be loaded under this name, and started.
@@ -105,7 +105,7 @@ pub struct Surroundings {
     active: GuestAddr,
     /// The results of the converters from the previous tick.
     conversions: [u16; ADC_CHANNELS],
-    asked: Vec<Asked>,
+    asked: Vec<StimulusRequest>,
 }
 
 impl Surroundings {
@@ -201,11 +201,11 @@ impl Surroundings {
         let Some(assist) = &mut world.assist else { return };
         let polls = row_named(call.function).and_then(|row| row.attributes.polls);
         assist.called(polls.is_some(), now);
-        if polls == Some(Polled::Bit)
+        if polls == Some(PolledState::Bit)
             && let Some(bit) = Bit::new(call.argument)
             && bit_state(io, memory, bit).1
         {
-            assist.polled(bit, Asker { thread: call.thread, at: call.at });
+            assist.polled(bit, InputReader { thread: call.thread, at: call.at });
         }
     }
 
@@ -287,7 +287,7 @@ impl Surroundings {
     fn slice(&mut self, instant: &Instant<'_>) -> Moment {
         let start = instant.now - Cycles::PER_TICK;
         let Some(thread) = ThreadId::new(instant.memory.get(CURRENT_THREAD)) else {
-            return Moment { turn: Turn::Primary, slice_start: instant.now };
+            return Moment { turn: SliceOwner::Primary, slice_start: instant.now };
         };
         let Parts { world, out, .. } = &mut self.parts;
         if world.records_changes() && start >= Cycles::default() {
@@ -295,7 +295,7 @@ impl Surroundings {
             let slice = trace::Record::Slice { thread, end: instant.now, interrupted_at: None };
             out.tell(start, EventKind::Trace(slice));
         }
-        Moment { turn: Turn::User(thread), slice_start: start + INTERRUPT }
+        Moment { turn: SliceOwner::User(thread), slice_start: start + INTERRUPT }
     }
 
     /// The threads as the firmware has them.
@@ -428,21 +428,21 @@ impl Surroundings {
         }
         let bytes = self.parts.pc.usb.take_all();
         if !bytes.is_empty() {
-            self.asked.push(Asked::Send(bytes));
+            self.asked.push(StimulusRequest::Send(bytes));
         }
         for request in self.parts.out.take_requests() {
             if let Request::Run(thread, name) = request {
-                self.asked.push(Asked::Run(thread, name.to_string()));
+                self.asked.push(StimulusRequest::Run(thread, name.to_string()));
             }
         }
     }
 
     fn command(&mut self, line: &str) {
-        self.asked.push(Asked::Send(format!("\u{1b}.{line}\r").into_bytes()));
+        self.asked.push(StimulusRequest::Send(format!("\u{1b}.{line}\r").into_bytes()));
     }
 
     /// Takes the requests to the board since the last call.
-    pub fn take_asked(&mut self) -> Vec<Asked> {
+    pub fn take_asked(&mut self) -> Vec<StimulusRequest> {
         std::mem::take(&mut self.asked)
     }
 

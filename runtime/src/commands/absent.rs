@@ -10,7 +10,7 @@ use crate::out::Message;
 
 /// The reason for which the board does not know a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Why {
+enum AbsenceReason {
     /// The board has it under this name.
     Named(&'static str),
     /// Later firmware than any that is modelled has it.
@@ -19,10 +19,10 @@ enum Why {
     OtherBoard,
 }
 
-use Why::{Later, Named, OtherBoard};
+use AbsenceReason::{Later, Named, OtherBoard};
 
 /// Words in upper case without their numbers, as the manual writes them.
-const WORDS: &[(&str, Why)] = &[
+const WORDS: &[(&str, AbsenceReason)] = &[
     ("ARCEX", Later),
     ("ARCZX", Named("ArcXZ")),
     ("ARCHEXXZ", Named("ArcHexZX")),

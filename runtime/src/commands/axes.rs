@@ -9,7 +9,7 @@ use super::motion::planned;
 use super::numbers::{plain, precise};
 use super::session::{Answer, Session};
 use crate::firmware::motion;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Reports or sets an integer; its limits are the table's.
 pub(super) fn integer(session: &mut Session<'_, '_>, values: &Values, field: Field<i32>) -> Answer {

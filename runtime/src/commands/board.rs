@@ -6,7 +6,7 @@ use super::arguments::Values;
 use super::session::{Answer, Session};
 use crate::firmware::serial;
 use crate::out::{Message, Request};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The board's reply once flash is written (host-protocol.md section 9).
 const FLASH_COMPLETE: &str = "Program Flash Image Complete";

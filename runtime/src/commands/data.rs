@@ -10,7 +10,7 @@ use vm::memory::GuestMemory;
 
 use super::arguments::{LineReader, Mistake};
 use crate::pc::Downloads;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Words on a line of gather data.
 pub(super) const WORDS_PER_LINE: usize = 8;

@@ -22,7 +22,7 @@ use crate::arithmetic::division::divide_singles;
 use crate::firmware::gather;
 use crate::firmware::parts::Parts;
 use crate::servo::{Servo, moves};
-use crate::views::{Typed, chan};
+use crate::views::{TypedAccess, chan};
 
 /// Ticks before an experiment's motion: 0.02 s.
 const REST: u64 = 222;

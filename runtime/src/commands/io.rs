@@ -8,7 +8,7 @@ use kmotiondef::variables::{DAC_BUFFER, VIRTUAL_BITS_EX};
 use super::arguments::Values;
 use super::session::{Answer, Session};
 use crate::firmware::{io, kogna, kogna_bus};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The first LED.
 const LED0: i32 = 46;

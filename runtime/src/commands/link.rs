@@ -18,7 +18,7 @@ use super::{Command, absent, find};
 use crate::firmware::parts::Parts;
 use crate::firmware::serial;
 use crate::out::{EventKind, Message};
-use crate::pc::{Arrival, ByteLink, Pc};
+use crate::pc::{ByteLink, Pc, ReceivedItem};
 
 /// Characters of a line; the last of them ends it.
 const LINE_LIMIT: usize = 2560;
@@ -75,12 +75,12 @@ impl Link {
                 out.push(Output::Echo(echo));
             }
             match arrival? {
-                Arrival::Abort => {
+                ReceivedItem::Abort => {
                     let buffer = std::mem::take(&mut self.buffer);
                     *self = Self { geometry: self.geometry, buffer, ..Self::default() };
                     out.push(Output::Aborted);
                 }
-                Arrival::Line(text, is_echoed) => {
+                ReceivedItem::Line(text, is_echoed) => {
                     self.prompts |= is_echoed && !is_data;
                     return Some(text);
                 }

@@ -8,7 +8,7 @@ use super::arguments::Values;
 use super::axes::pointer;
 use super::session::{Answer, Session};
 use crate::firmware::motion;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// A motion call from the primary thread, which plans at once.
 pub(super) fn planned(outcome: Outcome<()>) -> Answer {

@@ -3,9 +3,9 @@
 use crate::text::{Arguments, Dialect, format_counted};
 
 /// One number for the formatter.
-struct One(f64);
+struct SingleNumber(f64);
 
-impl Arguments for One {
+impl Arguments for SingleNumber {
     type Error = std::convert::Infallible;
 
     fn word(&mut self) -> Result<u32, Self::Error> {
@@ -30,7 +30,7 @@ fn formatted(pattern: &str, value: f64) -> String {
 }
 
 fn formatted_in(dialect: Dialect, pattern: &str, value: f64) -> String {
-    let Ok(formatted) = format_counted(dialect, pattern.as_bytes(), &mut One(value));
+    let Ok(formatted) = format_counted(dialect, pattern.as_bytes(), &mut SingleNumber(value));
     String::from_utf8_lossy(&formatted.text).into_owned()
 }
 

@@ -18,7 +18,7 @@ use crate::servo::coordinated::segment::Command;
 use crate::servo::coordinated::system::{LETTERS, letters};
 use crate::servo::coordinated::{buffer, rate, system};
 use crate::servo::hold;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Letters of the commands without U and V.
 const SIX: usize = 6;

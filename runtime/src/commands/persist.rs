@@ -6,7 +6,7 @@ use kmotiondef::variables::PERSIST;
 
 use super::arguments::Values;
 use super::session::{Answer, Session};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The element selected by the first argument.
 fn element(values: &Values) -> Place<i32> {

@@ -10,7 +10,7 @@ use super::data::{Data, DataKind};
 use super::session::{Answer, Session};
 use crate::firmware::thread;
 use crate::out::Message;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 pub(super) fn execute(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (thread, context) = (values.thread(), &mut *session.context);

@@ -21,7 +21,7 @@ use super::session::{Answer, Session};
 use crate::firmware::parts::Parts;
 use crate::io::kanalog::conversion;
 use crate::servo::hold;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Version of the record, and its words.
 const VERSION_AND_SIZE: i32 = 308 << 16 | WORDS as i32;

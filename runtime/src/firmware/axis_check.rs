@@ -15,16 +15,16 @@ use vm::memory::GuestMemory;
 
 use enabling::{limit_active, loop_input};
 
-use super::calls::{EndedWait, Jogged, Overlap, Shift, SmallMove};
+use super::calls::{EndedWait, JogRecord, Overlap, PositionShift, SmallMove};
 use super::parts::Parts;
-use crate::machine::OtherUnits;
+use crate::machine::UnitMismatch;
 use crate::machine::description::Condition;
 use crate::out::{Message, OtherPlace, Speaker};
 use crate::servo::CallPlace;
 use crate::servo::coordinated::system::is_member;
 use crate::servo::independent::{has_motion, is_exponential};
 use crate::servo::limits::{WatchedLimit, unwatched_limits, watched_limits};
-use crate::views::{Typed, chan};
+use crate::views::{TypedAccess, chan};
 
 /// A program enables an axis at a destination.
 pub(crate) fn enabled(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId, dest: f64) {
@@ -49,7 +49,7 @@ pub(crate) fn disables(parts: &mut Parts, memory: &GuestMemory, axis: AxisId) {
 
 /// A move to a place, after the zero of the axis has shifted.
 pub(crate) fn shifted(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId) {
-    if let Some(Shift { from, to, thread, at }) = parts.calls.motions.take_shift(axis) {
+    if let Some(PositionShift { from, to, thread, at }) = parts.calls.motions.take_shift(axis) {
         let other = OtherPlace { thread, at };
         parts
             .out
@@ -82,7 +82,7 @@ fn limit_of_other(parts: &Parts, memory: &GuestMemory, function: Function, axis:
 
 /// A unit of the machine file in which the axis cannot be moved: it would cross its travel within a second.
 fn units_differ(parts: &Parts, memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
-    let OtherUnits { units, place, field, unit, travel } = parts.machine.notes.other_units(memory, axis)?;
+    let UnitMismatch { units, place, field, unit, travel } = parts.machine.notes.other_units(memory, axis)?;
     let speed = f64::from(memory.axis(axis, Chan::VEL));
     let travel = travel.filter(|travel| speed > *travel)?;
     Some(Message::UnitsDiffer { function, axis, units, place, speed, unit, travel, field })
@@ -148,9 +148,9 @@ pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: 
     }
     let wait = parts.calls.waits.of(thread);
     let (looked, last_bit, has_repeated) = (wait.looked, wait.last_bit, wait.has_repeated);
-    let now = (speed != 0.0).then_some(Jogged { thread, dest, speed, looked });
+    let now = (speed != 0.0).then_some(JogRecord { thread, dest, speed, last_poll: looked });
     let to = speed;
-    let is_over = |before: &Jogged| speed == 0.0 || before.speed * speed < 0.0;
+    let is_over = |before: &JogRecord| speed == 0.0 || before.speed * speed < 0.0;
     let before =
         parts.calls.motions.jogs(axis, now).filter(|before| is_over(before) && before.thread == thread);
     if let Some(message) = before
@@ -160,8 +160,8 @@ pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: 
     {
         parts.out.diagnose(caller, message);
     }
-    let Some(Jogged { speed, .. }) =
-        before.filter(|before| (dest - before.dest).abs() < MOVED && looked > before.looked && !has_repeated)
+    let Some(JogRecord { speed, .. }) = before
+        .filter(|before| (dest - before.dest).abs() < MOVED && looked > before.last_poll && !has_repeated)
     else {
         return;
     };
@@ -415,7 +415,7 @@ fn swapped_limits(memory: &GuestMemory, function: Function, axis: AxisId) -> Opt
 }
 
 /// A setting of 0, and its effect.
-type Zero = (&'static str, &'static str);
+type ZeroSetting = (&'static str, &'static str);
 
 /// The usual effect: nothing drives the motor.
 const STAYS: &str = "its output stays 0 and its motor does not move";
@@ -431,7 +431,7 @@ fn no_gain(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Mes
 }
 
 /// A setting of 0 of the output stage.
-fn zero_of_output(memory: &GuestMemory, axis: AxisId, mode: OutputMode) -> Option<Zero> {
+fn zero_of_output(memory: &GuestMemory, axis: AxisId, mode: OutputMode) -> Option<ZeroSetting> {
     let has_gain = OutputMode::has_generator(Some(mode)) || mode == OutputMode::DacServo;
     let is_microstep = matches!(mode, OutputMode::Microstep | OutputMode::ClosedLoopMicrostep);
     let is_commutated = is_microstep || matches!(mode, OutputMode::Brushless3Ph | OutputMode::Brushless4Ph);
@@ -447,7 +447,7 @@ fn zero_of_output(memory: &GuestMemory, axis: AxisId, mode: OutputMode) -> Optio
 }
 
 /// A setting of 0 of a closed loop.
-fn zero_of_loop(memory: &GuestMemory, axis: AxisId, mode: OutputMode) -> Option<Zero> {
+fn zero_of_loop(memory: &GuestMemory, axis: AxisId, mode: OutputMode) -> Option<ZeroSetting> {
     // Steps follow the command, to which the loop only adds its output: without that they are those of an open loop.
     let has_steps = matches!(mode, OutputMode::ClosedLoopStepDir | OutputMode::ClosedLoopMicrostep);
     let output = if has_steps { None } else { zero_of_compensation(memory, axis) };
@@ -460,7 +460,7 @@ fn is_zero(memory: &GuestMemory, axis: AxisId, field: Field<f32>) -> bool {
 }
 
 /// A setting of 0 that keeps the output at 0.
-fn zero_of_compensation(memory: &GuestMemory, axis: AxisId) -> Option<Zero> {
+fn zero_of_compensation(memory: &GuestMemory, axis: AxisId) -> Option<ZeroSetting> {
     let is_zero = |field| is_zero(memory, axis, field);
     let blocks = |filter: usize| {
         let filter = chan(axis).field(Chan::IIR.element(filter));
@@ -483,7 +483,7 @@ fn zero_of_compensation(memory: &GuestMemory, axis: AxisId) -> Option<Zero> {
 }
 
 /// A setting of 0 that leaves the position or the integrator without effect.
-fn zero_of_feedback(memory: &GuestMemory, axis: AxisId) -> Option<Zero> {
+fn zero_of_feedback(memory: &GuestMemory, axis: AxisId) -> Option<ZeroSetting> {
     let is_zero = |field| is_zero(memory, axis, field);
     let has_no_forward = is_zero(Chan::FF_VEL) && is_zero(Chan::FF_ACCEL);
     let input = memory.axis(axis, Chan::INPUT_MODE);

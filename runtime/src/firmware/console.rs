@@ -17,7 +17,7 @@ use super::parts::Parts;
 use super::string::text;
 use crate::firmware::dispatch::Varargs;
 use crate::out::{LINE_LIMIT, Message};
-use crate::text::{Arguments, Scanned, Sink, format_counted, scan};
+use crate::text::{Arguments, ScannedValue, Sink, format_counted, scan};
 
 /// Longest string a `%s` reads.
 const LONGEST: u32 = 0x10_0000;
@@ -74,20 +74,20 @@ impl Arguments for GuestArguments<'_> {
 impl Sink for GuestArguments<'_> {
     type Error = TrapKind;
 
-    fn store(&mut self, value: Scanned<'_>) -> Result<(), TrapKind> {
+    fn store(&mut self, value: ScannedValue<'_>) -> Result<(), TrapKind> {
         let place = self.address()?;
         match value {
-            Scanned::Byte(value) => self.memory.store(place, value),
-            Scanned::Short(value) => self.memory.store(place, value),
-            Scanned::Int(value) => self.memory.store(place, value),
-            Scanned::Long(value) => {
+            ScannedValue::Byte(value) => self.memory.store(place, value),
+            ScannedValue::Short(value) => self.memory.store(place, value),
+            ScannedValue::Int(value) => self.memory.store(place, value),
+            ScannedValue::Long(value) => {
                 self.memory.store(place, value as u32)?;
                 self.memory.store(place.offset(4), (value >> 32) as u32)
             }
-            Scanned::Float(value) => self.memory.store(place, value),
-            Scanned::Double(value) => self.memory.store(place, value),
-            Scanned::Chars(text) => self.memory.write_bytes(place, text),
-            Scanned::Text(text) => {
+            ScannedValue::Float(value) => self.memory.store(place, value),
+            ScannedValue::Double(value) => self.memory.store(place, value),
+            ScannedValue::Chars(text) => self.memory.write_bytes(place, text),
+            ScannedValue::Text(text) => {
                 let mut text = text.to_vec();
                 text.push(0);
                 self.memory.write_bytes(place, &text)
@@ -221,12 +221,12 @@ pub(crate) fn print(
 }
 
 /// The one value of `PrintFloat` and `PrintInt`.
-struct One {
+struct SingleArgument {
     word: u32,
     double: f64,
 }
 
-impl Arguments for One {
+impl Arguments for SingleArgument {
     type Error = TrapKind;
 
     fn word(&mut self) -> Result<u32, TrapKind> {
@@ -250,7 +250,7 @@ fn print_one(
     parts: &mut Parts,
     caller: &mut Caller<'_>,
     pattern: GuestAddr,
-    mut value: One,
+    mut value: SingleArgument,
 ) -> Result<Outcome<i32>, TrapKind> {
     if let Some(outcome) = resumed(parts, caller) {
         return Ok(outcome);
@@ -268,7 +268,7 @@ pub(crate) fn print_float(
     pattern: GuestAddr,
     value: f64,
 ) -> Result<Outcome<i32>, TrapKind> {
-    print_one(parts, caller, pattern, One { word: value as i32 as u32, double: value })
+    print_one(parts, caller, pattern, SingleArgument { word: value as i32 as u32, double: value })
 }
 
 pub(crate) fn print_int(
@@ -277,7 +277,7 @@ pub(crate) fn print_int(
     pattern: GuestAddr,
     value: i32,
 ) -> Result<Outcome<i32>, TrapKind> {
-    print_one(parts, caller, pattern, One { word: value as u32, double: f64::from(value) })
+    print_one(parts, caller, pattern, SingleArgument { word: value as u32, double: f64::from(value) })
 }
 
 pub(crate) fn puts(

@@ -17,7 +17,7 @@ use crate::servo::coordinated::system::{assign, first_disabled, members};
 use crate::servo::coordinated::{buffer, feedhold, rate, system};
 use crate::servo::independent::has_motion;
 use crate::servo::{hold, moves, planning};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Assigns the letters from X on; the other letters are unchanged.
 pub(crate) fn define(parts: &mut Parts, caller: &mut Caller<'_>, axes: &[i32]) {

@@ -20,7 +20,7 @@ use crate::firmware::dispatch::Varargs;
 use crate::out::Message;
 use crate::pc::disk::{ARRIVED, ASKED, DiskRequest};
 use crate::text::{Arguments, format};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The handle of the file open for reading.
 const READING: GuestAddr = GuestAddr::new(0x1001_A418);
@@ -28,9 +28,9 @@ const READING: GuestAddr = GuestAddr::new(0x1001_A418);
 const WRITING: GuestAddr = GuestAddr::new(0x1001_A41C);
 
 /// Values for a text that is taken as a format a second time: there are none.
-struct Nothing;
+struct NoArguments;
 
-impl Arguments for Nothing {
+impl Arguments for NoArguments {
     type Error = TrapKind;
 
     fn word(&mut self) -> Result<u32, TrapKind> {
@@ -52,7 +52,7 @@ impl Arguments for Nothing {
 
 /// A request as it is printed. Board quirk: the text after the code is taken as a format a second time.
 fn printed(request: DiskRequest, text: &[u8]) -> Result<Vec<u8>, TrapKind> {
-    let text = format(&[&[request.code()], text].concat(), &mut Nothing)?;
+    let text = format(&[&[request.code()], text].concat(), &mut NoArguments)?;
     Ok(cut(&text).to_vec())
 }
 

@@ -11,7 +11,7 @@ use vm::firmware::Caller;
 
 use super::parts::Parts;
 use crate::out::Message;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Numbers from a thousandth to ten million have such bits, with either sign.
 const NUMBERS: std::ops::RangeInclusive<f32> = 0.001..=1e7;

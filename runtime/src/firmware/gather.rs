@@ -10,7 +10,7 @@ use vm::firmware::Caller;
 
 use super::parts::Parts;
 use crate::out::Message;
-use crate::views::{Typed, chan};
+use crate::views::{TypedAccess, chan};
 
 /// An address beyond any end: recording is idle.
 const IDLE: GuestAddr = GuestAddr::new(0xFFFF_FFFC);

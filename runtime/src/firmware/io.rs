@@ -21,8 +21,8 @@ use crate::io::{bits, kanalog};
 use crate::machine::{Channel, LateRead, MissedPulse, ReadNotice};
 use crate::out::Message;
 use crate::servo::wired::driver;
-use crate::views::Typed;
-use crate::world::stimulus::Asker;
+use crate::views::TypedAccess;
+use crate::world::stimulus::InputReader;
 use chips::fpga::kanalog_pin;
 use chips::kanalog::{ADC_CHANNELS, ZERO};
 
@@ -219,7 +219,7 @@ pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> 
         parts.out.diagnose(caller, message);
     }
     if let Some(assist) = &mut parts.world.assist {
-        assist.polled(bit, Asker { thread: caller.thread, at: caller.at });
+        assist.polled(bit, InputReader { thread: caller.thread, at: caller.at });
     } else if !parts.io.pins.is_driven(bit) && !parts.io.pins.is_described(bit) {
         parts.out.diagnose(caller, Message::UndrivenInput { bit, level: level.into() });
     }

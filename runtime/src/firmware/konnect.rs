@@ -68,7 +68,7 @@ mod tests {
 
     use super::*;
     use crate::testing::TestBench;
-    use crate::views::Typed;
+    use crate::views::TypedAccess;
 
     #[test]
     fn inputs_of_each_added_board_read_0() {

@@ -21,7 +21,7 @@ use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
 use vm::firmware::{Caller, Outcome};
 use vm::memory::GuestMemory;
 
-use super::calls::{Commanded, Continuation};
+use super::calls::{CommandedMotion, Continuation};
 use super::parts::Parts;
 use super::{axis_check, costs, float_bits};
 use crate::arithmetic::division::divide;
@@ -35,7 +35,7 @@ use crate::servo::moves::{Accelerations, Planner, limits_with, start_jog, start_
 use crate::servo::planning;
 use crate::servo::profile::{LEAD, Mode, MotionState};
 use crate::servo::{hold, switching};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use chips::stepgen::GENERATORS;
 use schedule::row_cost;
 
@@ -323,8 +323,8 @@ fn begins(
         return false;
     }
     let motion = match request.is_relative {
-        true => Commanded::MoveRel(request.target, target),
-        false => Commanded::Move(target),
+        true => CommandedMotion::MoveRel(request.target, target),
+        false => CommandedMotion::Move(target),
     };
     replaced::begins(parts, caller, axis, function, motion);
     let is_bits = float_bits::notice(parts, caller, function, request.target);
@@ -572,7 +572,7 @@ fn begin_jog(
         if velocity == 0.0 {
             replaced::ends(parts, caller, axis, Function::Jog);
         } else {
-            replaced::begins(parts, caller, axis, Function::Jog, Commanded::Jog(velocity));
+            replaced::begins(parts, caller, axis, Function::Jog, CommandedMotion::Jog(velocity));
             axis_check::moved(parts, caller, Function::Jog, axis);
         }
     }

@@ -8,7 +8,7 @@ use kmotiondef::timing::Timing;
 use kmotiondef::{Bit, Cycles, GuestAddr};
 use vm::firmware::{Caller, TickContext};
 use vm::memory::GuestMemory;
-use vm::scheduler::Turn;
+use vm::scheduler::SliceOwner;
 
 use super::calls::Calls;
 use super::level::ModelledBoard;
@@ -19,7 +19,7 @@ use crate::io::{Io, bits};
 use crate::machine::{Lines, Machine};
 use crate::out::{Message, Out};
 use crate::pc::Pc;
-use crate::servo::cache::Change;
+use crate::servo::cache::Invalidation;
 use crate::servo::{Servo, Tick};
 use crate::world::trace::View;
 use crate::world::{World, WorldAccess};
@@ -31,7 +31,7 @@ pub(crate) struct Clock {
     pub(crate) tick_start: Cycles,
     /// The beginning of the present slice.
     pub(crate) slice_start: Cycles,
-    pub(crate) turn: Turn,
+    pub(crate) turn: SliceOwner,
     /// The time that the primary thread still needs to send the string it has begun.
     pub(crate) sending: Cycles,
 }
@@ -72,7 +72,7 @@ impl Parts {
             clock: Clock {
                 tick_start: Cycles::default(),
                 slice_start: Cycles::default(),
-                turn: Turn::Primary,
+                turn: SliceOwner::Primary,
                 sending: Cycles::default(),
             },
             timing: Timing::Fast,
@@ -165,6 +165,6 @@ impl Parts {
 
     /// Notes that something outside has changed a state on which the next tick may depend.
     pub(crate) fn disturb(&mut self) {
-        self.servo.cache.invalidate(Change::Anything);
+        self.servo.cache.invalidate(Invalidation::Anything);
     }
 }

@@ -7,7 +7,7 @@ use vm::trap::TrapKind;
 use super::calls::Continuation;
 use super::parts::Parts;
 use super::string::text;
-use crate::io::flash::{self, Refused};
+use crate::io::flash::{self, BankRefused};
 use crate::out::Message;
 
 /// The time that erasing and programming a block takes; other threads and the servo continue.
@@ -79,7 +79,7 @@ fn program(
 /// Selects the bank for reads, on a board with strict flash; others show all of flash at its address. The board refuses
 /// its boot sector (devices.md section 7).
 pub(crate) fn set_flash_bank(parts: &mut Parts, caller: &mut Caller<'_>, address: GuestAddr) {
-    if parts.io.flash.select(address, caller.memory) == Err(Refused) {
+    if parts.io.flash.select(address, caller.memory) == Err(BankRefused) {
         parts.out.console.message(&format!("Attempted boot sector write : addr={:x}", address.get()));
     }
 }

@@ -14,7 +14,7 @@ use vm::trap::TrapKind;
 use super::io::set_bit_direction;
 use super::parts::Parts;
 use crate::out::Message;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The time that setting up takes: 2 ms.
 const SETUP: Cycles = Cycles::new(400_000);

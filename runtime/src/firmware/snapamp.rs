@@ -8,7 +8,7 @@ use vm::firmware::Caller;
 use super::parts::Parts;
 use crate::io::snapamp::{CLEAR, CLEAR_ERRORS, DIRECTION, ENCODERS, LEVELS, PINS, Register};
 use crate::out::Message;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// General pins of a board, and the first of each board.
 const COUNT: i32 = 14;

@@ -6,7 +6,7 @@ use vm::firmware::Caller;
 use super::parts::Parts;
 use crate::out::Message;
 use crate::servo::spindle::{self, Setup};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 pub(crate) fn configure_spindle(
     parts: &mut Parts,

@@ -10,7 +10,7 @@ use super::not_modelled;
 use super::parts::Parts;
 use super::string::LONGEST;
 use crate::out::Message;
-use crate::text::{Digits, Keep, digits, float_prefix, integer_prefix, magnitude, place_of_point};
+use crate::text::{Digits, Precision, digits, float_prefix, integer_prefix, magnitude, place_of_point};
 
 pub(crate) fn malloc(parts: &mut Parts, caller: &mut Caller<'_>, size: u32) -> GuestAddr {
     parts.calls.heap.take(size).map_or(GuestAddr::NULL, |block| caller.memory.place_of(block))
@@ -215,7 +215,7 @@ const FCVT: GuestAddr = GuestAddr::new(0x1001_A430);
 const MOST_DIGITS: usize = 380;
 
 /// A number as digits, and where its point is.
-struct Converted {
+struct NumberDigits {
     text: Vec<u8>,
     point: i32,
     /// It has become longer by rounding.
@@ -232,17 +232,17 @@ pub(crate) fn ecvt(
 ) -> Result<GuestAddr, TrapKind> {
     let magnitude = value.abs();
     let converted = if magnitude < f64::MIN_POSITIVE {
-        Converted { text: vec![0; count.max(0) as usize], point: 1, has_grown: false }
+        NumberDigits { text: vec![0; count.max(0) as usize], point: 1, has_grown: false }
     } else {
         let place = place_of_point(magnitude);
         // Without a count, the digits before the point remain unchanged.
-        let rounded = usize::try_from(count).map(|count| digits(magnitude, Keep::Significant(count)));
+        let rounded = usize::try_from(count).map(|count| digits(magnitude, Precision::Significant(count)));
         let Digits { digits: mut text, point, .. } = rounded.unwrap_or_else(|_| {
-            let all = digits(magnitude, Keep::Significant(MOST_DIGITS));
+            let all = digits(magnitude, Precision::Significant(MOST_DIGITS));
             Digits { digits: all.digits[..(place.max(0) as usize).min(all.digits.len())].to_vec(), ..all }
         });
         text.truncate(usize::try_from(count).unwrap_or(MOST_DIGITS));
-        Converted { text, point, has_grown: point > place }
+        NumberDigits { text, point, has_grown: point > place }
     };
     store_digits(caller, ECVT, value, &converted, [point, sign])
 }
@@ -257,13 +257,14 @@ pub(crate) fn fcvt(
 ) -> Result<GuestAddr, TrapKind> {
     let magnitude = value.abs();
     let converted = if magnitude < f64::MIN_POSITIVE {
-        Converted { text: vec![0; decimals.max(0) as usize + 1], point: 1, has_grown: false }
+        NumberDigits { text: vec![0; decimals.max(0) as usize + 1], point: 1, has_grown: false }
     } else {
         let place = place_of_point(magnitude);
         // Board quirk: a number that is too small is rounded by its first digit, and at most one digit is omitted.
         let wanted = i64::from(place) + i64::from(decimals.max(-1));
-        let Digits { digits: text, point, .. } = digits(magnitude, Keep::Significant(wanted.max(0) as usize));
-        Converted { has_grown: point > place, text, point }
+        let Digits { digits: text, point, .. } =
+            digits(magnitude, Precision::Significant(wanted.max(0) as usize));
+        NumberDigits { has_grown: point > place, text, point }
     };
     store_digits(caller, FCVT, value, &converted, [point, sign])
 }
@@ -273,7 +274,7 @@ fn store_digits(
     caller: &mut Caller<'_>,
     buffer: GuestAddr,
     value: f64,
-    converted: &Converted,
+    converted: &NumberDigits,
     [point, sign]: [GuestAddr; 2],
 ) -> Result<GuestAddr, TrapKind> {
     let kept = converted.text.iter().take(MOST_DIGITS).map(|digit| b'0' + digit);

@@ -10,7 +10,7 @@ use vm::thread::Threads;
 
 use super::parts::Parts;
 use crate::out::{Message, Request};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The entry point at which a thread is started.
 fn entry(memory: &GuestMemory, thread: ThreadId) -> GuestAddr {

@@ -11,7 +11,7 @@ use super::float_bits;
 use super::parts::Parts;
 use crate::io::timer;
 use crate::out::Message;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Cycles of one second, as a double.
 const CYCLES_PER_SECOND: f64 = Cycles::PER_SECOND.get() as f64;

@@ -4,7 +4,7 @@ use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
 use kmotiondef::variables::LAST_PWM;
 use vm::memory::GuestMemory;
 
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Stores the word sent to a PWM channel.
 #[inline]

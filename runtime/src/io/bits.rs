@@ -10,7 +10,7 @@ use vm::memory::GuestMemory;
 
 use super::{Io, changes, kanalog};
 use crate::out::{Message, Out};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The first virtual bit.
 const VIRTUAL: u16 = 48;

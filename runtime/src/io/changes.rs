@@ -5,7 +5,7 @@ use kmotiondef::Cycles;
 use kmotiondef::variables::{VIRTUAL_BITS, VIRTUAL_BITS_EX};
 use vm::memory::GuestMemory;
 
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The bits of the word of virtual bits that exist.
 const VIRTUAL_MASK: u32 = 0xffff;

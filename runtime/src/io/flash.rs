@@ -13,7 +13,7 @@ use kmotiondef::map::{FLASH, IRAM, PROGRAM_BASE, PROGRAM_SIZE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::memory::GuestMemory;
 
-pub(crate) use banks::{Banks, Refused};
+pub(crate) use banks::{BankRefused, Banks};
 
 /// Bytes of flash memory, and of a file that holds it.
 pub const FLASH_SIZE: usize = FLASH.size as usize;

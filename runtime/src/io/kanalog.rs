@@ -11,7 +11,7 @@ use kmotiondef::variables::{ADC_BUFFER_IN, KANALOG_PRESENT};
 use kmotiondef::{Bit, Cycles};
 use vm::memory::GuestMemory;
 
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Counts of an analog input in a volt: 2048 in 10 V.
 pub(crate) const COUNTS_PER_VOLT: f64 = 204.8;

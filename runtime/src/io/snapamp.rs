@@ -9,7 +9,7 @@ use kmotiondef::Cycles;
 use kmotiondef::variables::ADC_BUFFER_IN_SNAP;
 use vm::memory::GuestMemory;
 
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Registers of a board.
 const REGISTERS: usize = 32;

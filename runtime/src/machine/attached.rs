@@ -17,7 +17,7 @@ use chips::uart::Uart;
 
 /// The parts of the board that a device can reach.
 #[derive(Debug)]
-pub(crate) struct Outside<'a> {
+pub(crate) struct DeviceContext<'a> {
     pub(crate) pins: &'a mut Pins,
     pub(crate) kanalog: &'a mut Kanalog,
     pub(crate) uart: &'a mut Uart,
@@ -26,28 +26,28 @@ pub(crate) struct Outside<'a> {
 }
 
 /// Another device in the same state.
-pub(crate) trait Copied {
+pub(crate) trait CloneDevice {
     /// The copy.
-    fn copied(&self) -> Box<dyn Attached>;
+    fn clone_device(&self) -> Box<dyn AttachedDevice>;
 }
 
-impl<T: Attached + Clone + 'static> Copied for T {
-    fn copied(&self) -> Box<dyn Attached> {
+impl<T: AttachedDevice + Clone + 'static> CloneDevice for T {
+    fn clone_device(&self) -> Box<dyn AttachedDevice> {
         Box::new(self.clone())
     }
 }
 
-impl Clone for Box<dyn Attached> {
+impl Clone for Box<dyn AttachedDevice> {
     fn clone(&self) -> Self {
         // Of the device, not of the box.
-        (**self).copied()
+        (**self).clone_device()
     }
 }
 
 /// A device around the board.
-pub(crate) trait Attached: Debug + Send + Copied {
+pub(crate) trait AttachedDevice: Debug + Send + CloneDevice {
     /// A bit has changed.
-    fn edge(&mut self, change: BitChange, outside: &mut Outside<'_>) {
+    fn edge(&mut self, change: BitChange, outside: &mut DeviceContext<'_>) {
         let _ = (change, outside);
     }
 
@@ -57,12 +57,12 @@ pub(crate) trait Attached: Debug + Send + Copied {
     }
 
     /// The UART has sent a character.
-    fn sent(&mut self, byte: u8, at: Cycles, outside: &mut Outside<'_>) {
+    fn sent(&mut self, byte: u8, at: Cycles, outside: &mut DeviceContext<'_>) {
         let _ = (byte, at, outside);
     }
 
     /// A tick begins.
-    fn tick(&mut self, now: Cycles, outside: &mut Outside<'_>) {
+    fn tick(&mut self, now: Cycles, outside: &mut DeviceContext<'_>) {
         let _ = (now, outside);
     }
 

@@ -11,7 +11,7 @@ use vm::memory::GuestMemory;
 use super::Machine;
 use super::wiring::{ENCODERS, reads};
 use crate::out::{Message, Out};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 impl Machine {
     /// Turns the encoder on an input by counts.

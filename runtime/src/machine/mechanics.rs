@@ -18,7 +18,7 @@ use super::{Channel, Loads, Machine};
 use crate::io::Io;
 use crate::io::bits::bit_state;
 use crate::out::Out;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use chips::kanalog::conversion;
 
 /// A contact that is made at some position along an axis.
@@ -26,7 +26,7 @@ use chips::kanalog::conversion;
 struct Contact {
     bit: Bit,
     axis: AxisId,
-    closes: Closes,
+    closes: ClosedRange,
     active: bool,
     /// The time at which a program last read the bit, and the position of the load then.
     read: Option<(Cycles, f64)>,
@@ -45,7 +45,7 @@ pub(crate) struct LateRead {
 
 /// The range in which it is closed.
 #[derive(Clone, Copy, Debug)]
-enum Closes {
+enum ClosedRange {
     Where(Condition),
     /// Once in a distance: every, width, offset.
     Every(f64, f64, f64),
@@ -55,8 +55,8 @@ impl Contact {
     fn is_closed(&self, loads: &Loads, tables: &[Table]) -> bool {
         let load = loads[self.axis].load;
         match self.closes {
-            Closes::Where(condition) => condition.holds(table(tables, self.axis).unwrap_or(load)),
-            Closes::Every(every, width, offset) => {
+            ClosedRange::Where(condition) => condition.holds(table(tables, self.axis).unwrap_or(load)),
+            ClosedRange::Every(every, width, offset) => {
                 let turns = (load - offset) / every;
                 (turns - libm::floor(turns)) * every < width
             }
@@ -74,7 +74,7 @@ struct TurningSpindle {
 
 /// Two sides of a gantry that are further apart than it tolerates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Racked {
+pub(crate) struct RackedGantry {
     pub(crate) gantry: Gantry,
     /// Their difference in units.
     pub(crate) apart: f64,
@@ -82,7 +82,7 @@ pub(crate) struct Racked {
 
 /// The equipment that a machine file connects to the board, without the loads, as the file describes it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Connected {
+pub struct ConnectedEquipment {
     /// Switches that axes trip.
     pub switches: Vec<Switch>,
     /// Probes.
@@ -108,7 +108,7 @@ pub(crate) struct Mechanics {
     tables: Vec<Table>,
     gantries: Vec<Gantry>,
     /// A gantry with its sides too far apart.
-    racked: Option<Racked>,
+    racked: Option<RackedGantry>,
     /// Inputs that a stimulus has detached from their switches, and analog inputs detached from their sources.
     held: Vec<Bit>,
     held_analog: Vec<usize>,
@@ -118,11 +118,11 @@ pub(crate) struct Mechanics {
 
 impl Mechanics {
     /// Creates the mechanics of a description.
-    pub(crate) fn new(axes: &[Axis; Axes::MAX], described: &Connected) -> Self {
+    pub(crate) fn new(axes: &[Axis; Axes::MAX], described: &ConnectedEquipment) -> Self {
         let switches = described.switches.iter().map(|switch| Contact {
             bit: switch.bit,
             axis: switch.axis,
-            closes: Closes::Where(switch.when),
+            closes: ClosedRange::Where(switch.when),
             active: switch.active,
             read: None,
             level: None,
@@ -130,14 +130,14 @@ impl Mechanics {
         let probes = described.probes.iter().map(|probe| Contact {
             bit: probe.bit,
             axis: probe.axis,
-            closes: Closes::Where(probe.touches),
+            closes: ClosedRange::Where(probe.touches),
             active: true,
             read: None,
             level: None,
         });
         let indexes = AxisId::all().filter_map(|axis| {
             let index = axes[axis.index()].index?;
-            let closes = Closes::Every(index.every, index.width, index.offset);
+            let closes = ClosedRange::Every(index.every, index.width, index.offset);
             Some(Contact { bit: index.bit, axis, closes, active: true, read: None, level: None })
         });
         let contacts: Vec<_> = switches.chain(probes).chain(indexes).collect();
@@ -188,8 +188,8 @@ impl Mechanics {
     pub(crate) fn contacts(&self, bit: Bit) -> impl Iterator<Item = (AxisId, Option<Condition>, bool)> + '_ {
         self.contacts.iter().filter(move |contact| contact.bit == bit).map(|contact| {
             let condition = match contact.closes {
-                Closes::Where(condition) => Some(condition),
-                Closes::Every(..) => None,
+                ClosedRange::Where(condition) => Some(condition),
+                ClosedRange::Every(..) => None,
             };
             (contact.axis, condition, contact.active)
         })
@@ -209,8 +209,8 @@ impl Mechanics {
     /// The ranges of switches and probes, with their bits and axes.
     pub(crate) fn places(&self) -> impl Iterator<Item = (Bit, AxisId, Condition)> + '_ {
         self.contacts.iter().filter_map(|contact| match contact.closes {
-            Closes::Where(condition) => Some((contact.bit, contact.axis, condition)),
-            Closes::Every(..) => None,
+            ClosedRange::Where(condition) => Some((contact.bit, contact.axis, condition)),
+            ClosedRange::Every(..) => None,
         })
     }
 
@@ -222,7 +222,7 @@ impl Mechanics {
 
     /// A gantry whose sides have been too far apart since the last call.
     #[inline]
-    pub(crate) fn take_racked(&mut self) -> Option<Racked> {
+    pub(crate) fn take_racked(&mut self) -> Option<RackedGantry> {
         self.racked.take()
     }
 
@@ -286,7 +286,7 @@ impl Machine {
         /// Reads that are further apart than this do not wait for a pulse.
         const MOMENT: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 100);
         let contact = self.mechanics.contacts.iter_mut().find(|contact| contact.bit == bit)?;
-        let Closes::Every(every, width, offset) = contact.closes else { return None };
+        let ClosedRange::Every(every, width, offset) = contact.closes else { return None };
         let load = self.loads[contact.axis].load;
         let (at, before) = contact.read.replace((now, load))?;
         let turn = |load: f64| libm::floor((load - offset) / every);
@@ -308,7 +308,7 @@ impl Machine {
         const LONG: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 50);
         const FAR: f64 = 100.0;
         let contact = self.mechanics.contacts.iter_mut().find(|contact| contact.bit == bit)?;
-        let Closes::Where(_) = contact.closes else { return None };
+        let ClosedRange::Where(_) = contact.closes else { return None };
         let (axis, load) = (contact.axis, self.loads[contact.axis].load);
         let before = contact.level.replace(level);
         let (at, place) = contact.read.replace((now, load))?;
@@ -431,7 +431,7 @@ impl Machine {
             let [a, b] = gantry.axes.map(|axis| self.loads[axis].load);
             let apart = (a - b).abs();
             if apart > gantry.most {
-                self.mechanics.racked = Some(Racked { gantry: *gantry, apart });
+                self.mechanics.racked = Some(RackedGantry { gantry: *gantry, apart });
             }
         }
     }

@@ -23,13 +23,13 @@ use std::sync::Arc;
 use kmotiondef::{Axes, AxisId, Bit, Cycles};
 use vm::memory::GuestMemory;
 
-pub use mechanics::Connected;
+pub use mechanics::ConnectedEquipment;
 
 pub(crate) use description::Channel;
 pub(crate) use lines::Lines;
-pub(crate) use mechanics::{LateRead, Mechanics, Racked};
-pub(crate) use motor::Applied;
-pub(crate) use notes::{Notes, OtherUnits};
+pub(crate) use mechanics::{LateRead, Mechanics, RackedGantry};
+pub(crate) use motor::AmplifierSignal;
+pub(crate) use notes::{Notes, UnitMismatch};
 pub(crate) use plant::{COUNTS_PER_TICK, Drive, Plant};
 pub(crate) use pulses::{MissedPulse, Pulses, ReadNotice};
 
@@ -38,7 +38,7 @@ use crate::io::bits::bit_state;
 use crate::io::changes;
 use crate::io::konnect::KonnectBoard;
 use crate::io::snapamp::SnapAmps;
-use crate::machine::attached::{Attached, Outside};
+use crate::machine::attached::{AttachedDevice, DeviceContext};
 use crate::machine::wiring::{ENCODERS, Wiring};
 use crate::out::{EventKind, Message, Out};
 use chips::changes::BitChange;
@@ -134,7 +134,7 @@ pub(crate) struct Machine {
     /// The pulses at inputs.
     pub(crate) pulses: Pulses,
     /// Devices on the board's lines.
-    attached: Vec<Box<dyn Attached>>,
+    attached: Vec<Box<dyn AttachedDevice>>,
     /// True if motors on the first four step generators need the enable signal of a KStep.
     pub(crate) needs_enable: bool,
 }
@@ -143,7 +143,7 @@ impl Machine {
     /// Attaches a device and reports the bits that are high to it.
     pub(crate) fn attach(
         &mut self,
-        mut device: Box<dyn Attached>,
+        mut device: Box<dyn AttachedDevice>,
         io: &mut Io,
         out: &mut Out,
         memory: &GuestMemory,
@@ -163,8 +163,8 @@ impl Machine {
     }
 
     /// Returns the parts that devices reach, and the devices.
-    fn outside<'a>(&'a mut self, io: &'a mut Io) -> (Outside<'a>, &'a mut [Box<dyn Attached>]) {
-        let outside = Outside {
+    fn outside<'a>(&'a mut self, io: &'a mut Io) -> (DeviceContext<'a>, &'a mut [Box<dyn AttachedDevice>]) {
+        let outside = DeviceContext {
             pins: &mut io.pins,
             kanalog: &mut io.kanalog,
             uart: &mut io.uart,

@@ -12,7 +12,7 @@ const DAC_KU: f64 = 50.0;
 
 /// The signal that an amplifier receives.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Applied {
+pub(crate) enum AmplifierSignal {
     /// PWM counts.
     Pwm(f64),
     /// Counts of an analog output.
@@ -77,16 +77,16 @@ impl Motor {
     }
 
     /// The velocity a tick later; `own_cycles` is the axis' own value of its cycles.
-    pub(crate) fn advance(&self, velocity: f64, applied: Applied, load: f64, own_cycles: f64) -> f64 {
+    pub(crate) fn advance(&self, velocity: f64, applied: AmplifierSignal, load: f64, own_cycles: f64) -> f64 {
         match applied {
-            Applied::Pwm(counts) => self.approach(velocity, self.ku.unwrap_or(PWM_KU) * counts),
-            Applied::Dac(counts) => self.approach(velocity, self.ku.unwrap_or(DAC_KU) * counts),
-            Applied::Vector(magnitude, angle) => {
+            AmplifierSignal::Pwm(counts) => self.approach(velocity, self.ku.unwrap_or(PWM_KU) * counts),
+            AmplifierSignal::Dac(counts) => self.approach(velocity, self.ku.unwrap_or(DAC_KU) * counts),
+            AmplifierSignal::Vector(magnitude, angle) => {
                 let lead = angle - self.angle(load, self.cycles(own_cycles));
                 let torque = magnitude * libm::sin(TAU * (lead - libm::floor(lead)));
                 self.approach(velocity, self.ku.unwrap_or(PWM_KU) * torque)
             }
-            Applied::Current(counts) => {
+            AmplifierSignal::Current(counts) => {
                 let pushed = velocity * self.viscous + self.ka * counts * TIMEBASE;
                 self.rub(velocity, pushed, self.ka * counts == 0.0)
             }
@@ -125,7 +125,7 @@ mod tests {
     }
 
     /// The velocity after some seconds of a constant drive, from rest.
-    fn after(motor: &Motor, applied: Applied, seconds: f64) -> f64 {
+    fn after(motor: &Motor, applied: AmplifierSignal, seconds: f64) -> f64 {
         let ticks = (seconds / TIMEBASE) as usize;
         (0..ticks).fold(0.0, |velocity, _| motor.advance(velocity, applied, 0.0, 0.0))
     }
@@ -133,21 +133,21 @@ mod tests {
     #[test]
     fn a_voltage_approaches_its_speed_with_the_time_constant() {
         let end = 435.0 * 100.0;
-        let speed = after(&motor(0.0, 1.0), Applied::Pwm(100.0), 0.02);
+        let speed = after(&motor(0.0, 1.0), AmplifierSignal::Pwm(100.0), 0.02);
         assert!((speed / end - 0.632).abs() < 0.003, "{speed}");
-        let heavy = after(&motor(0.0, 3.0), Applied::Pwm(100.0), 0.06);
+        let heavy = after(&motor(0.0, 3.0), AmplifierSignal::Pwm(100.0), 0.06);
         assert!((heavy / end - 0.632).abs() < 0.003, "{heavy}");
     }
 
     #[test]
     fn friction_holds_slows_and_stops() {
         let motor = motor(435.0 * 10.0, 1.0);
-        assert_eq!(after(&motor, Applied::Pwm(10.0), 1.0), 0.0);
-        let speed = after(&motor, Applied::Pwm(30.0), 1.0);
+        assert_eq!(after(&motor, AmplifierSignal::Pwm(10.0), 1.0), 0.0);
+        let speed = after(&motor, AmplifierSignal::Pwm(30.0), 1.0);
         assert!((speed - 435.0 * 20.0).abs() < 1e-6, "{speed}");
         let mut velocity = speed;
         let ticks = (0..10_000).find(|_| {
-            velocity = motor.advance(velocity, Applied::Pwm(0.0), 0.0, 0.0);
+            velocity = motor.advance(velocity, AmplifierSignal::Pwm(0.0), 0.0, 0.0);
             velocity == 0.0
         });
         assert!(ticks.is_some_and(|ticks| ticks < 1000), "{ticks:?}");
@@ -158,7 +158,7 @@ mod tests {
         let pulled = |friction| {
             let mut axis = Axis::default();
             (axis.motor.pull, axis.motor.friction) = (-100.0, friction);
-            after(&Motor::new(&axis), Applied::Pwm(0.0), 1.0)
+            after(&Motor::new(&axis), AmplifierSignal::Pwm(0.0), 1.0)
         };
         assert!((pulled(0.0) + 100.0).abs() < 1e-6, "{}", pulled(0.0));
         assert_eq!(pulled(150.0), 0.0);
@@ -166,9 +166,9 @@ mod tests {
 
     #[test]
     fn a_current_acts_as_a_torque() {
-        let speed = after(&motor(0.0, 1.0), Applied::Current(100.0), 0.01);
+        let speed = after(&motor(0.0, 1.0), AmplifierSignal::Current(100.0), 0.01);
         assert!((speed - 2000.0).abs() < 40.0, "{speed}");
-        let heavy = after(&motor(0.0, 2.0), Applied::Current(100.0), 0.01);
+        let heavy = after(&motor(0.0, 2.0), AmplifierSignal::Current(100.0), 0.01);
         assert!((heavy - 1000.0).abs() < 20.0, "{heavy}");
     }
 }

@@ -9,8 +9,8 @@ use kmotiondef::{Axes, AxisId, Bit, Field};
 use vm::memory::GuestMemory;
 
 use super::description::{Axis, KeyPlace};
-use super::mechanics::Connected;
-use crate::views::Typed;
+use super::mechanics::ConnectedEquipment;
+use crate::views::TypedAccess;
 
 /// Units of lengths and angles that equal several counts or steps of an axis.
 const COARSE: &[&str] = &[
@@ -41,7 +41,7 @@ struct AxisNotes {
 
 /// An axis that a program moves in steps or counts, although its machine file names another unit.
 #[derive(Clone, Debug)]
-pub(crate) struct OtherUnits {
+pub(crate) struct UnitMismatch {
     /// The unit of the machine file.
     pub(crate) units: String,
     /// Its position in the file.
@@ -56,7 +56,11 @@ pub(crate) struct OtherUnits {
 
 impl Notes {
     /// Takes the places of a machine's description.
-    pub(crate) fn new(name: Option<Arc<str>>, axes: &[Axis; Axes::MAX], described: &Connected) -> Self {
+    pub(crate) fn new(
+        name: Option<Arc<str>>,
+        axes: &[Axis; Axes::MAX],
+        described: &ConnectedEquipment,
+    ) -> Self {
         let switches = described.switches.iter().map(|switch| (switch.bit, switch.place));
         let probes = described.probes.iter().map(|probe| (probe.bit, probe.place));
         let contacts = switches.chain(probes).collect();
@@ -84,12 +88,12 @@ impl Notes {
     }
 
     /// The unit of the machine file, if it cannot be the unit in which a program moves an axis.
-    pub(crate) fn other_units(&self, memory: &GuestMemory, axis: AxisId) -> Option<OtherUnits> {
+    pub(crate) fn other_units(&self, memory: &GuestMemory, axis: AxisId) -> Option<UnitMismatch> {
         let notes = self.axis(axis)?;
         let units = notes.units.clone()?;
         let (field, unit) = unit(memory, axis).filter(|(_, unit)| *unit == STEPS || notes.counts_units)?;
         let place = self.shown(*notes.keys.get("units")?);
-        Some(OtherUnits { units, place, field, unit, travel: notes.travel })
+        Some(UnitMismatch { units, place, field, unit, travel: notes.travel })
     }
 
     fn axis(&self, axis: AxisId) -> Option<&AxisNotes> {

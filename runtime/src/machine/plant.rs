@@ -10,7 +10,7 @@ use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::Chan;
 
 use super::description::{Axis, Encoder, Model};
-use super::motor::{Applied, Motor};
+use super::motor::{AmplifierSignal, Motor};
 use crate::views::AxisView;
 
 /// The most counts per tick for which an 8-bit encoder register can still distinguish the direction, with some margin.
@@ -29,16 +29,16 @@ pub(crate) enum Drive {
     /// A step generator or microstepping: the command that it follows, in position units.
     Steps(f64),
     /// A closed loop with this command, and its output.
-    Loop(f64, Applied),
+    Loop(f64, AmplifierSignal),
     /// The output that reaches the motor of an axis that follows no command.
-    Open(Applied),
+    Open(AmplifierSignal),
     /// A vector on the phases of a disabled axis: magnitude, and angle in cycles.
     Vector(f64, f64),
 }
 
 /// The constant properties of the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Build {
+struct LoadProperties {
     model: Model,
     /// The fraction of the remaining error that a closed loop removes in one tick.
     followed: f64,
@@ -121,7 +121,7 @@ struct Steps {
 /// One axis' load, in position units of the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Plant {
-    build: Build,
+    build: LoadProperties,
     /// Machine coordinate of the load.
     pub(crate) load: f64,
     /// Its velocity, if it has a motor.
@@ -158,7 +158,7 @@ impl Default for Plant {
 impl Plant {
     /// The load that a machine file describes.
     pub(crate) fn new(axis: &Axis) -> Self {
-        let build = Build {
+        let build = LoadProperties {
             model: axis.model,
             followed: if axis.lag_s > 0.0 { 1.0 - libm::exp(-TIMEBASE / axis.lag_s) } else { 1.0 },
             encoder: Scale::of(axis),
@@ -344,7 +344,7 @@ impl Plant {
         let before = self.load;
         match (self.build.model, self.drive) {
             (Model::None, _) | (Model::Follow, Drive::Loop(..)) => return false,
-            (Model::Follow | Model::Motor, Drive::None) => self.run(Applied::Pwm(0.0), chan),
+            (Model::Follow | Model::Motor, Drive::None) => self.run(AmplifierSignal::Pwm(0.0), chan),
             (_, Drive::Open(applied)) => self.run(applied, chan),
             (_, Drive::Steps(command)) if command == self.steps.reached => return false,
             (_, Drive::Steps(command)) => {
@@ -412,7 +412,7 @@ impl Plant {
     }
 
     /// Runs its motor for a tick.
-    fn run(&mut self, applied: Applied, chan: &AxisView<'_>) {
+    fn run(&mut self, applied: AmplifierSignal, chan: &AxisView<'_>) {
         let last = self.velocity;
         let cycles = f64::from_bits(chan.get(Chan::INV_DIST_PER_CYCLE).to_bits());
         self.velocity = self.build.motor.advance(last, applied, self.load, cycles);

@@ -24,20 +24,20 @@ pub(crate) enum ReadNotice {
 
 /// The latest changes of the inputs that the world drives.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Pulses(BTreeMap<Bit, Driven>);
+pub(crate) struct Pulses(BTreeMap<Bit, InputHistory>);
 
 #[derive(Clone, Debug, Default)]
-struct Driven {
+struct InputHistory {
     level: bool,
     /// The times of the last changes, the latest first.
     changes: [Cycles; 3],
     count: u32,
-    read: Option<Read>,
+    read: Option<LastRead>,
 }
 
 /// The last read of a bit.
 #[derive(Clone, Copy, Debug)]
-struct Read {
+struct LastRead {
     site: Option<CodeAddr>,
     at: Cycles,
     level: bool,
@@ -51,9 +51,9 @@ struct Read {
 /// Reads that follow each other this closely come from a loop that does little else.
 const QUICK: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 100);
 
-impl Driven {
+impl InputHistory {
     /// The pulse that has begun and ended since a read.
-    fn missed(&self, before: &Read, level: bool, now: Cycles) -> Option<MissedPulse> {
+    fn missed(&self, before: &LastRead, level: bool, now: Cycles) -> Option<MissedPulse> {
         /// Shorter pulses are bounces, or meant for other hardware.
         const SHORTEST: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 1000);
         /// A program that reads less often does not poll.
@@ -72,7 +72,7 @@ impl Driven {
 
     /// Handles the first fall of an input that has been on from the start, as in a safety chain, while the loop that
     /// has always watched it waits for something else.
-    fn late(&self, before: &Read, level: bool, now: Cycles) -> Option<ReadNotice> {
+    fn late(&self, before: &LastRead, level: bool, now: Cycles) -> Option<ReadNotice> {
         const WATCHED: u32 = 100;
         const LATE: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 2);
         let fell = self.changes[0];
@@ -114,7 +114,7 @@ impl Pulses {
         let (reads, quick) = before.map_or((1, 0), |before| {
             (before.reads.saturating_add(1), before.quick.saturating_add(is_quick.into()))
         });
-        driven.read = Some(Read { site, at: now, level, count: driven.count, reads, quick });
+        driven.read = Some(LastRead { site, at: now, level, count: driven.count, reads, quick });
         let before = before?;
         let missed = driven.missed(&before, level, now).map(ReadNotice::Missed);
         missed.or_else(|| driven.late(&before, level, now))

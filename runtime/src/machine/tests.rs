@@ -9,7 +9,7 @@ use kmotiondef::limits::TIMEBASE;
 use crate::board::connect::{install, play};
 use crate::board::machine_file::MachineFile;
 use crate::testing::TestBench;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 fn axis(number: i32) -> AxisId {
     AxisId::new(number).expect("an axis")

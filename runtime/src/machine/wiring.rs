@@ -10,7 +10,7 @@ use kmotiondef::{Axes, AxisId};
 use vm::memory::GuestMemory;
 
 use super::description::{Axis, Channel, Encoder, Model};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use chips::stepgen::generator_of;
 
 /// Encoder inputs of a board and its SnapAmps.

@@ -55,15 +55,15 @@ pub enum AnswerError {
 
 /// Answers that are used in turn.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Turns<T>(VecDeque<T>);
+pub(super) struct AnswerQueue<T>(VecDeque<T>);
 
-impl<T> Default for Turns<T> {
+impl<T> Default for AnswerQueue<T> {
     fn default() -> Self {
         Self(VecDeque::new())
     }
 }
 
-impl<T: Copy> Turns<T> {
+impl<T: Copy> AnswerQueue<T> {
     /// Returns whether no answer is left.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -78,9 +78,9 @@ impl<T: Copy> Turns<T> {
 /// The answers to message and input boxes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Boxes {
-    pub(super) buttons: Turns<i32>,
+    pub(super) buttons: AnswerQueue<i32>,
     /// Numbers typed; `None` for the cancel button.
-    pub(super) inputs: Turns<Option<f32>>,
+    pub(super) inputs: AnswerQueue<Option<f32>>,
     /// True if a box that has no answer waits for one, and each answer is for one box.
     pub(super) waits: bool,
 }
@@ -101,7 +101,7 @@ impl Boxes {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answers {
     pub(super) boxes: Boxes,
-    pub(super) mdi: Turns<i32>,
+    pub(super) mdi: AnswerQueue<i32>,
     /// Answers to requests by number, which replace the requested action.
     pub(super) results: BTreeMap<i32, i32>,
     /// Requests that are never answered.
@@ -120,7 +120,7 @@ impl Default for Answers {
     fn default() -> Self {
         Self {
             boxes: Boxes::default(),
-            mdi: Turns::default(),
+            mdi: AnswerQueue::default(),
             results: BTreeMap::new(),
             silent: BTreeSet::new(),
             variables: BTreeMap::new(),

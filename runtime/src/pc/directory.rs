@@ -100,7 +100,7 @@ impl Directory {
         let name = spelling(&folder, last);
         let file = folder
             .open_with(&name, &purpose.options())
-            .map_err(|error| reason(&folder, &name, last, error, Wanted::File))?;
+            .map_err(|error| reason(&folder, &name, last, error, EntryKind::File))?;
         let known = file.metadata()?;
         if !known.is_file() {
             return Err(FileError::NotAFile);
@@ -125,7 +125,7 @@ impl Directory {
 
 /// The kind of entry that is opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Wanted {
+enum EntryKind {
     Folder,
     File,
 }
@@ -139,15 +139,15 @@ fn open_folder(folder: &Dir, part: &str, purpose: OpenMode) -> Result<Dir, FileE
     {
         return Err(error.into());
     }
-    folder.open_dir_nofollow(&name).map_err(|error| reason(folder, &name, part, error, Wanted::Folder))
+    folder.open_dir_nofollow(&name).map_err(|error| reason(folder, &name, part, error, EntryKind::Folder))
 }
 
 /// The reason why an entry is not opened. Systems report a link in several ways; this only determines the message,
 /// after the entry has been refused.
-fn reason(folder: &Dir, name: &OsStr, part: &str, error: io::Error, wanted: Wanted) -> FileError {
+fn reason(folder: &Dir, name: &OsStr, part: &str, error: io::Error, wanted: EntryKind) -> FileError {
     match folder.symlink_metadata(name) {
         Ok(known) if known.is_symlink() => FileError::Link(part.to_owned()),
-        Ok(known) if wanted == Wanted::File && !known.is_file() => FileError::NotAFile,
+        Ok(known) if wanted == EntryKind::File && !known.is_file() => FileError::NotAFile,
         _ => error.into(),
     }
 }

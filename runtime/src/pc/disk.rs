@@ -13,7 +13,7 @@ use vm::memory::GuestMemory;
 
 use crate::out::{Message, Out};
 use crate::pc::files::{FileError, HostFiles};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// From a request to its answer: 20 ms, unless a machine file sets another.
 const LATENCY: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 50);

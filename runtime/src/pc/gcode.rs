@@ -9,13 +9,16 @@ use std::collections::BTreeMap;
 
 /// The part of a line that the PC cannot execute.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Unknown(pub(super) String);
+pub(super) struct UnsupportedText(pub(super) String);
 
 /// The maximum nesting of brackets.
 const DEEPEST: usize = 50;
 
 /// The assignments of a line, in order; none if one of them is not understood.
-pub(super) fn assignments(line: &str, variables: &BTreeMap<i32, f64>) -> Result<Vec<(i32, f64)>, Unknown> {
+pub(super) fn assignments(
+    line: &str,
+    variables: &BTreeMap<i32, f64>,
+) -> Result<Vec<(i32, f64)>, UnsupportedText> {
     let text: String = without_comments(line).to_ascii_lowercase().split_whitespace().collect();
     if !text.contains('#') || !text.contains('=') {
         return Ok(Vec::new());
@@ -50,12 +53,12 @@ fn without_comments(line: &str) -> String {
         .collect()
 }
 
-fn unknown<T>(what: impl Into<String>) -> Result<T, Unknown> {
-    Err(Unknown(what.into()))
+fn unknown<T>(what: impl Into<String>) -> Result<T, UnsupportedText> {
+    Err(UnsupportedText(what.into()))
 }
 
 /// The variable that a value names.
-fn number_of(value: f64) -> Result<i32, Unknown> {
+fn number_of(value: f64) -> Result<i32, UnsupportedText> {
     let number = libm::round(value);
     if (value - number).abs() > 0.0001 || !(1.0..=5400.0).contains(&number) {
         return unknown(format!("there is no variable #{value}"));
@@ -82,14 +85,14 @@ impl<'a> GcodeReader<'a> {
     }
 
     /// A word of G code: a letter and its value.
-    fn skip_word(&mut self) -> Result<(), Unknown> {
+    fn skip_word(&mut self) -> Result<(), UnsupportedText> {
         let letter = self.rest.chars().next().unwrap_or_default();
         self.rest = self.rest.get(letter.len_utf8()..).unwrap_or_default();
         if letter.is_ascii_alphabetic() && !self.rest.is_empty() { self.value().map(drop) } else { Ok(()) }
     }
 
     /// A value as a word or an assignment has it: no operator outside brackets.
-    fn value(&mut self) -> Result<f64, Unknown> {
+    fn value(&mut self) -> Result<f64, UnsupportedText> {
         if self.take("-") {
             return Ok(-self.value()?);
         }
@@ -99,7 +102,7 @@ impl<'a> GcodeReader<'a> {
         self.primary()
     }
 
-    fn primary(&mut self) -> Result<f64, Unknown> {
+    fn primary(&mut self) -> Result<f64, UnsupportedText> {
         self.depth += 1;
         if self.depth > DEEPEST {
             return unknown("too many brackets");
@@ -119,12 +122,12 @@ impl<'a> GcodeReader<'a> {
     }
 
     /// Reads the expression in a bracket, with its end.
-    fn bracket(&mut self) -> Result<f64, Unknown> {
+    fn bracket(&mut self) -> Result<f64, UnsupportedText> {
         let value = self.operation(0)?;
         if self.take("]") { Ok(value) } else { unknown("a bracket is not closed") }
     }
 
-    fn operation(&mut self, level: usize) -> Result<f64, Unknown> {
+    fn operation(&mut self, level: usize) -> Result<f64, UnsupportedText> {
         let Some(operators) = OPERATORS.get(level) else { return self.signed() };
         let mut left = self.operation(level + 1)?;
         loop {
@@ -139,7 +142,7 @@ impl<'a> GcodeReader<'a> {
         }
     }
 
-    fn signed(&mut self) -> Result<f64, Unknown> {
+    fn signed(&mut self) -> Result<f64, UnsupportedText> {
         if self.take("-") {
             Ok(-self.signed()?)
         } else if self.take("+") {
@@ -149,7 +152,7 @@ impl<'a> GcodeReader<'a> {
         }
     }
 
-    fn number(&mut self) -> Result<f64, Unknown> {
+    fn number(&mut self) -> Result<f64, UnsupportedText> {
         let end = self
             .rest
             .char_indices()
@@ -165,7 +168,7 @@ impl<'a> GcodeReader<'a> {
         }
     }
 
-    fn function(&mut self) -> Result<f64, Unknown> {
+    fn function(&mut self) -> Result<f64, UnsupportedText> {
         let end =
             self.rest.find(|character: char| !character.is_ascii_alphabetic()).unwrap_or(self.rest.len());
         let (name, rest) = self.rest.split_at(end);
@@ -200,7 +203,7 @@ impl<'a> GcodeReader<'a> {
     }
 }
 
-fn operate(sign: &str, left: f64, right: f64) -> Result<f64, Unknown> {
+fn operate(sign: &str, left: f64, right: f64) -> Result<f64, UnsupportedText> {
     let truth = |is_so: bool| f64::from(u8::from(is_so));
     let result = match sign {
         "**" => libm::pow(left, right),
@@ -234,7 +237,7 @@ mod tests {
 
     fn found(line: &str) -> Result<Vec<(i32, f64)>, String> {
         let variables = BTreeMap::from([(5, 2.5), (6, 7.0), (7, 5.0)]);
-        assignments(line, &variables).map_err(|Unknown(text)| text)
+        assignments(line, &variables).map_err(|UnsupportedText(text)| text)
     }
 
     #[test]

@@ -21,7 +21,7 @@ use crate::out::{EventKind, Message, Out};
 use crate::servo::coordinated::rate;
 use crate::servo::coordinated::system::nominal_change_time;
 use crate::servo::hold;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Ticks between two polls: 0.1 s.
 const POLL_TICKS: u64 = 1111;
@@ -422,7 +422,7 @@ fn mdi(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offset: i3
             host.answers.variables.extend(assignments);
             String::new()
         }
-        Err(gcode::Unknown(text)) => format!(": {text}; no variable is changed"),
+        Err(gcode::UnsupportedText(text)) => format!(": {text}; no variable is changed"),
     };
     say(out, context, format!("MDI: {line}{answer}{trouble}"));
     context.memory.set(data(2), result.unwrap_or(0));

@@ -14,7 +14,7 @@ const END: u8 = b'\r';
 
 /// The position of the link in a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Intake {
+enum LineState {
     /// Before its first byte.
     #[default]
     Start,
@@ -28,7 +28,7 @@ enum Intake {
 
 /// An item that has arrived.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Arrival {
+pub(crate) enum ReceivedItem {
     /// 0x03: the line in progress is dropped.
     Abort,
     /// A line, and whether it was echoed.
@@ -39,7 +39,7 @@ pub(crate) enum Arrival {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ByteLink {
     input: VecDeque<u8>,
-    intake: Intake,
+    intake: LineState,
     line: Vec<u8>,
     /// True if the bytes are no longer taken.
     is_dead: bool,
@@ -65,28 +65,28 @@ impl ByteLink {
 
     /// Takes bytes up to the end of a line, at most `limit` of its text, or to an abort; `None` if there are too few.
     /// Characters to be echoed are added to `echo`.
-    pub(crate) fn next(&mut self, limit: usize, echo: &mut Vec<u8>) -> Option<Arrival> {
+    pub(crate) fn next(&mut self, limit: usize, echo: &mut Vec<u8>) -> Option<ReceivedItem> {
         loop {
             let byte = self.input.pop_front()?;
             if byte == ABORT {
-                self.intake = Intake::Start;
+                self.intake = LineState::Start;
                 self.line.clear();
                 self.is_dead = false;
-                return Some(Arrival::Abort);
+                return Some(ReceivedItem::Abort);
             }
             match self.intake {
-                Intake::Start if byte == ESCAPE => {
-                    self.intake = Intake::Escaped;
+                LineState::Start if byte == ESCAPE => {
+                    self.intake = LineState::Escaped;
                     continue;
                 }
-                Intake::Escaped => {
-                    self.intake = Intake::Silent;
+                LineState::Escaped => {
+                    self.intake = LineState::Silent;
                     continue;
                 }
-                Intake::Start => self.intake = Intake::Echoed,
-                Intake::Silent | Intake::Echoed => {}
+                LineState::Start => self.intake = LineState::Echoed,
+                LineState::Silent | LineState::Echoed => {}
             }
-            let is_echoed = self.intake == Intake::Echoed;
+            let is_echoed = self.intake == LineState::Echoed;
             if is_echoed {
                 echo.push(byte);
             }
@@ -96,8 +96,8 @@ impl ByteLink {
             }
             if ends || self.line.len() == limit {
                 echo.extend(is_echoed.then_some(b'\n'));
-                self.intake = Intake::Start;
-                return Some(Arrival::Line(std::mem::take(&mut self.line), is_echoed));
+                self.intake = LineState::Start;
+                return Some(ReceivedItem::Line(std::mem::take(&mut self.line), is_echoed));
             }
         }
     }

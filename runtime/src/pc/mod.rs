@@ -15,7 +15,7 @@ mod requests;
 pub use answers::{AnswerError, Answers, HELP as ANSWERS_HELP};
 pub use boxes::OpenBox;
 pub(crate) use downloads::Downloads;
-pub(crate) use link::{Arrival, ByteLink};
+pub(crate) use link::{ByteLink, ReceivedItem};
 pub use remote::{RemoteBoard, RequestServer};
 pub use requests::is_request;
 

@@ -18,7 +18,7 @@ use super::answers::{AnswerError, Answers};
 use super::host::{self, Host, STRING_WORDS};
 use super::requests::{self, Direction, PcAction};
 use crate::out::{EventKind, Out};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Words of the gather buffer.
 const GATHER_WORDS: u32 = 2_000_000;
@@ -63,7 +63,7 @@ pub trait RemoteBoard {
 }
 
 /// The copy before a request is answered.
-struct Before {
+struct StateBeforeRequest {
     user_data: Vec<u32>,
     /// The elements that the request names.
     named: Range<usize>,
@@ -137,7 +137,7 @@ impl RequestServer {
         if self.host.is_for_person(code) {
             return Ok(self.host.show_box(&self.memory, code).into_iter().collect());
         }
-        let before = Before {
+        let before = StateBeforeRequest {
             user_data: self.user_data(),
             named: self.named(code, &parameters),
             overrides: self.overrides(),
@@ -212,7 +212,12 @@ impl RequestServer {
     }
 
     /// Stores the changes made by the answer on the board.
-    fn store<B: RemoteBoard>(&mut self, board: &mut B, code: i32, before: &Before) -> Result<(), B::Error> {
+    fn store<B: RemoteBoard>(
+        &mut self,
+        board: &mut B,
+        code: i32,
+        before: &StateBeforeRequest,
+    ) -> Result<(), B::Error> {
         let is_read = matches!(
             requests::action(code),
             Some(PcAction::Variables(Direction::Set) | PcAction::Tool(_, Direction::Set))

@@ -2,7 +2,7 @@
 
 /// The parameter of a request that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shown {
+pub(super) enum ShownParameter {
     /// None.
     Nothing,
     /// The first one, a whole number.
@@ -13,7 +13,7 @@ pub(super) enum Shown {
     Elsewhere,
 }
 
-use Shown::{Elsewhere, Nothing, Single, Whole};
+use ShownParameter::{Elsewhere, Nothing, Single, Whole};
 
 /// The direction of a request: it reads a value of the PC or writes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +70,7 @@ use PcAction::{
 };
 
 /// Number, name, shown parameter and action of every request. Source: gather-persist-console.md section 8.
-const REQUESTS: &[(i32, &str, Shown, PcAction)] = &[
+const REQUESTS: &[(i32, &str, ShownParameter, PcAction)] = &[
     (1, "emergency stop", Nothing, EmergencyStop),
     (2, "halt the job", Nothing, EndJob),
     (3, "execute the job", Nothing, BeginJob),

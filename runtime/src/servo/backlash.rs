@@ -40,7 +40,7 @@ mod tests {
 
     use super::*;
     use crate::testing::TestBench;
-    use crate::views::Typed;
+    use crate::views::TypedAccess;
 
     #[test]
     fn the_offset_ramps_as_recorded() {

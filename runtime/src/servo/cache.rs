@@ -2,7 +2,7 @@
 //!
 //! Guest memory is the only source of an axis' settings. Three values are derived from it: the plans of the axes,
 //! whether a tick would change anything at all, and whether the last tick left nothing to do. Code that changes their
-//! inputs must call [`Cache::invalidate`] with a [`Change`]; only this file decides which values a change affects.
+//! inputs must call [`Cache::invalidate`] with an [`Invalidation`]; only this file decides which values a change affects.
 
 use kmotiondef::timing::WaitStates;
 use kmotiondef::{Axes, AxisId, Cycles, GuestAddr};
@@ -16,7 +16,7 @@ use crate::machine::wiring::Wiring;
 
 /// The kind of change that invalidates derived values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Change {
+pub(crate) enum Invalidation {
     /// Anything may have: code outside the tick has had the board.
     Anything,
     /// Memory may have been written, by programs or by inputs at the beginning of a tick.
@@ -54,20 +54,20 @@ pub(crate) struct Cache {
 impl Cache {
     /// Drops the values that a change may have made wrong.
     #[inline]
-    pub(crate) const fn invalidate(&mut self, change: Change) {
+    pub(crate) const fn invalidate(&mut self, change: Invalidation) {
         match change {
-            Change::Anything => {
+            Invalidation::Anything => {
                 self.is_settled = false;
                 self.has_plans = false;
                 self.still.interrupt();
             }
-            Change::Memory => self.has_plans = false,
-            Change::Motion => self.still.interrupt(),
-            Change::SwitchedOff => {
+            Invalidation::Memory => self.has_plans = false,
+            Invalidation::Motion => self.still.interrupt(),
+            Invalidation::SwitchedOff => {
                 self.has_plans = false;
                 self.still.interrupt();
             }
-            Change::Thread => self.is_settled = false,
+            Invalidation::Thread => self.is_settled = false,
         }
     }
 
@@ -151,7 +151,7 @@ impl Cache {
     /// Ends the tick of the axes; returns whether it has changed anything, which `moved` implies.
     pub(super) fn end(&mut self, memory: &GuestMemory, moved: bool) -> bool {
         if moved {
-            self.invalidate(Change::Motion);
+            self.invalidate(Invalidation::Motion);
             return true;
         }
         !self.still.end(memory)

@@ -9,7 +9,7 @@ use kmotiondef::structs::Chan;
 use kmotiondef::{Cycles, GuestType};
 use vm::memory::GuestMemory;
 
-use crate::views::{Typed, chan, field_of};
+use crate::views::{TypedAccess, chan, field_of};
 
 /// Without an enabled axis.
 const IDLE: i64 = 2006;
@@ -37,7 +37,7 @@ mod tests {
 
     use super::*;
     use crate::testing::powered_memory;
-    use crate::views::Typed;
+    use crate::views::TypedAccess;
 
     #[test]
     fn enabled_axes_cost_what_was_measured() {

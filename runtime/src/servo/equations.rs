@@ -7,7 +7,7 @@ use kmotiondef::variables::LAST_PWM;
 use kmotiondef::{AxisId, Field};
 
 use crate::testing::TestBench;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 fn axis() -> AxisId {
     AxisId::new(0).expect("0 is an axis")

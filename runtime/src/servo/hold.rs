@@ -16,7 +16,7 @@ use super::moves::{limits, start_jog, start_move_to};
 use super::profile::Limits;
 use super::spindle;
 use super::state::Servo;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Ends the path to which an axis belongs, running or not, when the axis is disabled or zeroed (coordinated-motion.md
 /// section 3.4). A write to its `Enable` field does not do that.

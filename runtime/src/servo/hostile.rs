@@ -4,7 +4,7 @@ use kmotiondef::structs::{Chan, Iir};
 use kmotiondef::{AxisId, Field, GuestAddr};
 
 use crate::testing::TestBench;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 const NONSENSE: [f64; 7] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -1.0, 1e300, f64::MIN_POSITIVE];
 

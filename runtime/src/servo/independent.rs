@@ -7,7 +7,7 @@ use vm::memory::GuestMemory;
 
 use super::profile::{LEAD, MAX_STATES, Mode, MotionState, Point};
 use super::trajectory::{Approach, Cursor, Step, entered, point, step};
-use crate::views::{AxisView, Typed, field_of};
+use crate::views::{AxisView, TypedAccess, field_of};
 
 /// The state list of an axis.
 fn list(memory: &GuestMemory, axis: AxisId) -> Place<[TripCoeff; MAX_STATES]> {

@@ -10,7 +10,7 @@ use vm::memory::GuestMemory;
 use super::plan::{Encoder, Input};
 use crate::io::kanalog::conversion;
 use crate::machine::Loads;
-use crate::views::{AxisView, Typed};
+use crate::views::{AxisView, TypedAccess};
 
 /// Takes the position from an input that is not an encoder.
 pub(crate) fn measure(input: Input, loads: &mut Loads, memory: &mut GuestMemory, axis: AxisId) {

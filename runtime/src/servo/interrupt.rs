@@ -15,7 +15,7 @@ use super::coordinated::system;
 use super::independent::{has_motion, state};
 use super::profile::Mode;
 use super::recorder::is_recording;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The duration without an enabled axis, including its memory accesses: eight encoders and two registers.
 const IDLE: i64 = 2006;

@@ -10,14 +10,14 @@ use super::coordinated::system::is_member;
 use super::hold;
 use super::plan::AxisPlan;
 use super::state::{AxisMemory, Servo, Tick};
-use super::stop::Tells;
+use super::stop::StopReport;
 use super::switching::switch_off;
 use crate::io::Io;
 use crate::io::bits::bit_state;
 use crate::machine::Channel;
 use crate::machine::wiring::channel_of;
 use crate::out::{Message, Out};
-use crate::views::{AxisView, Typed};
+use crate::views::{AxisView, TypedAccess};
 
 /// `LimitSwitchOptions`: take the bit numbers from their own fields.
 const EXTENDED: i32 = 1 << 8;
@@ -283,7 +283,7 @@ fn check_switch(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, end
         if !is_member(memory, axis) {
             return;
         }
-        return tick.servo.stop_request.ask(format!("{} Limit Stop Axis:{axis}", end.name), Tells::Stop);
+        return tick.servo.stop_request.ask(format!("{} Limit Stop Axis:{axis}", end.name), StopReport::Stop);
     }
     tell(tick, &format!("{} Limit Disabled Axis:{axis}", end.name));
     switch_off(tick.servo, tick.machine, memory, axis);
@@ -298,7 +298,7 @@ fn check_soft(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, end: &End
         return;
     }
     let text = format!("{} Soft Limit FeedHold Axis:{axis}", end.name);
-    tick.servo.stop_request.ask(text, Tells::Always);
+    tick.servo.stop_request.ask(text, StopReport::Always);
 }
 
 /// Acts on the limits in the primary thread's slice; returns whether a stop was tried.
@@ -319,9 +319,9 @@ pub(crate) fn slice(servo: &mut Servo, out: &mut Out, memory: &mut GuestMemory) 
     }
     let stops = hold::begin(servo, memory);
     let is_told = |tells| match tells {
-        Tells::Stop => stops,
-        Tells::Always => true,
-        Tells::Never => false,
+        StopReport::Stop => stops,
+        StopReport::Always => true,
+        StopReport::Never => false,
     };
     if let Some((text, _)) = asked.filter(|(_, tells)| is_told(*tells)) {
         out.console.message(&text);

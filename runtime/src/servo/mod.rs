@@ -48,13 +48,13 @@ use kmotiondef::{AxisId, Bit};
 use vm::memory::GuestMemory;
 
 use crate::machine::description::Gantry;
-use crate::machine::{OtherUnits, Racked};
+use crate::machine::{RackedGantry, UnitMismatch};
 use crate::out::Message;
-use crate::servo::cache::Change;
+use crate::servo::cache::Invalidation;
 use crate::servo::plan::Input;
 use crate::servo::state::AxisMemory;
 use crate::servo::trajectory::TICKS_PER_SECOND;
-use crate::views::{AxisView, Typed};
+use crate::views::{AxisView, TypedAccess};
 use chips::stepgen::{StepLimit, generator_of};
 
 pub(crate) use output::{driven, four_phase, three_phase};
@@ -80,7 +80,7 @@ pub(crate) fn tick(tick: &mut Tick<'_>, memory: &mut GuestMemory, is_touched: bo
         tick.machine.signal(tick.io, tick.now);
         false
     };
-    if let Some(Racked { gantry: Gantry { axes: [axis, other], most }, apart }) =
+    if let Some(RackedGantry { gantry: Gantry { axes: [axis, other], most }, apart }) =
         tick.machine.mechanics.take_racked()
     {
         tick.out.remark(tick.now, Message::GantryRacks { axis, other, apart, most });
@@ -125,7 +125,7 @@ fn amplifiers_are_off(tick: &Tick<'_>) -> bool {
 #[inline]
 fn notice_pushes(tick: &mut Tick<'_>) {
     if tick.machine.loads.take_pushed() {
-        tick.servo.cache.invalidate(Change::Motion);
+        tick.servo.cache.invalidate(Invalidation::Motion);
     }
 }
 
@@ -243,7 +243,7 @@ fn note_stopped(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, place: 
     let plant = &tick.machine.loads[axis];
     let key = tick.machine.notes.key(axis, if place == plant.ends().0 { "min" } else { "max" });
     let effect = match tick.machine.notes.other_units(memory, axis) {
-        Some(OtherUnits { units, place, unit, .. }) => {
+        Some(UnitMismatch { units, place, unit, .. }) => {
             format!("{effect}; min, max and start are in {unit}, not in {units} ({place})")
         }
         None => effect.to_owned(),

@@ -8,7 +8,7 @@ use vm::memory::GuestMemory;
 use super::direct::{jog_direct, move_direct};
 use super::independent::{present, run, run_kept};
 use super::profile::{self, Limits};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The way in which moves and jogs are planned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

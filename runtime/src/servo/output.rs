@@ -15,9 +15,9 @@ use super::sine::{QUARTER, THIRD, sine};
 use super::state::Tick;
 use crate::io::amplifiers::{antiphase, current, store_pwm};
 use crate::machine::wiring::{DACS, channel_of};
-use crate::machine::{Applied, Channel, Drive};
+use crate::machine::{AmplifierSignal, Channel, Drive};
 use crate::out::Message;
-use crate::views::{AxisView, Typed};
+use crate::views::{AxisView, TypedAccess};
 
 /// The first PWM channel of a SnapAmp: its loops control current.
 const SNAP_AMP: i32 = 8;
@@ -39,8 +39,8 @@ pub(crate) fn drive(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId,
         store_pwm(memory, channel, pwm(channel, output as i32));
         let drive = match channel >= SNAP_AMP {
             true if is_faulted(tick, channel) => Drive::None,
-            true => Drive::Loop(command, Applied::Current(limited(output, MAX_PWMC_VALUE))),
-            false => Drive::Loop(command, Applied::Pwm(limited(output, MAX_PWM_VALUE))),
+            true => Drive::Loop(command, AmplifierSignal::Current(limited(output, MAX_PWMC_VALUE))),
+            false => Drive::Loop(command, AmplifierSignal::Pwm(limited(output, MAX_PWM_VALUE))),
         };
         tick.machine.loads[axis].drive = drive;
     } else {
@@ -76,7 +76,7 @@ fn drive_otherwise(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, 
             Drive::Steps(command)
         }
         Some(OutputMode::DacServo) => {
-            let applied = Applied::Dac(f64::from(analog(&chan, output)));
+            let applied = AmplifierSignal::Dac(f64::from(analog(&chan, output)));
             note_overwritten(tick, memory, axis);
             tick.servo.axes[axis.index()].analog = write_dac(memory, axis, output);
             Drive::Loop(command, applied)
@@ -104,13 +104,17 @@ pub(crate) fn driven(chan: &AxisView<'_>, stepped: f64) -> Drive {
         Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir) => Drive::Steps(stepped),
         Some(OutputMode::Microstep | OutputMode::ClosedLoopMicrostep) => Drive::Steps(command),
         Some(OutputMode::DcServo) if chan.get(Chan::OUTPUT_CHAN0) >= SNAP_AMP => {
-            Drive::Loop(command, Applied::Current(limited(output, MAX_PWMC_VALUE)))
+            Drive::Loop(command, AmplifierSignal::Current(limited(output, MAX_PWMC_VALUE)))
         }
-        Some(OutputMode::DcServo) => Drive::Loop(command, Applied::Pwm(limited(output, MAX_PWM_VALUE))),
-        Some(OutputMode::DacServo) => Drive::Loop(command, Applied::Dac(f64::from(analog(chan, output)))),
+        Some(OutputMode::DcServo) => {
+            Drive::Loop(command, AmplifierSignal::Pwm(limited(output, MAX_PWM_VALUE)))
+        }
+        Some(OutputMode::DacServo) => {
+            Drive::Loop(command, AmplifierSignal::Dac(f64::from(analog(chan, output))))
+        }
         Some(OutputMode::Brushless3Ph | OutputMode::Brushless4Ph) => {
             let magnitude = f64::from(output.clamp(-MAXV, MAXV));
-            Drive::Loop(command, Applied::Vector(magnitude, phase(chan)))
+            Drive::Loop(command, AmplifierSignal::Vector(magnitude, phase(chan)))
         }
     }
 }
@@ -134,7 +138,7 @@ fn turn(
     axis: AxisId,
     mode: OutputMode,
     output: f32,
-) -> Option<Applied> {
+) -> Option<AmplifierSignal> {
     let chan = AxisView::of(memory, axis);
     let (angle, channel) = (phase(&chan), chan.get(Chan::OUTPUT_CHAN0));
     let cycles = chan.get(Chan::INV_DIST_PER_CYCLE);
@@ -146,7 +150,7 @@ fn turn(
         four_phase(memory, axis, output, angle + FOUR_PHASE_LEAD * turned);
     }
     let magnitude = f64::from(output.clamp(-MAXV, MAXV));
-    (!is_faulted(tick, channel)).then_some(Applied::Vector(magnitude, angle))
+    (!is_faulted(tick, channel)).then_some(AmplifierSignal::Vector(magnitude, angle))
 }
 
 /// Makes a remark, once, on a brushless axis whose real motor would not follow as the simulated one does.

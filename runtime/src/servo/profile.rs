@@ -329,7 +329,7 @@ pub(crate) fn bare_move(from: f64, to: f64, ramps: [Ramp; 2], limits: &Limits) -
 /// A move planned while the axis moves: 20 ticks continue unchanged, then the target is approached at full speed, or
 /// the axis stops and starts again.
 pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<MotionState> {
-    let InMotion { mut path, sign, remaining, stop } = weigh(start, to, limits);
+    let MovingStart { mut path, sign, remaining, stop } = weigh(start, to, limits);
     if stop.is_some() {
         path.move_from_rest(to, [Ramp::Smooth; 2], limits);
         path.states.push(MotionState::END);
@@ -343,7 +343,7 @@ pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<Moti
 
 /// The beginning of a move in motion.
 #[derive(Clone, Debug)]
-pub(super) struct InMotion {
+pub(super) struct MovingStart {
     /// Its first phases: to full speed, or to rest.
     path: Path,
     /// The direction of its full speed.
@@ -355,7 +355,7 @@ pub(super) struct InMotion {
 }
 
 /// Decides whether a move in motion continues or stops first.
-pub(super) fn weigh(start: Point, to: f64, limits: &Limits) -> InMotion {
+pub(super) fn weigh(start: Point, to: f64, limits: &Limits) -> MovingStart {
     let path = lead(start);
     let mut stopped = path.clone();
     stopped.change(0.0, limits);
@@ -368,9 +368,9 @@ pub(super) fn weigh(start: Point, to: f64, limits: &Limits) -> InMotion {
     let remaining = to - shortest.end.x;
     if sign * remaining < 0.0 {
         let stop = Some(stopped.end.x);
-        return InMotion { path: stopped, sign, remaining, stop };
+        return MovingStart { path: stopped, sign, remaining, stop };
     }
-    InMotion { path: direct, sign, remaining, stop: None }
+    MovingStart { path: direct, sign, remaining, stop: None }
 }
 
 /// The point from which a motion changes its speed after the planning time.

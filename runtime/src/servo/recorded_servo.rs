@@ -9,7 +9,7 @@ use super::coordinated::system;
 use super::hold;
 use crate::testing::TestBench;
 use crate::text::vectors::rows;
-use crate::views::{Typed, chan};
+use crate::views::{TypedAccess, chan};
 
 fn axis() -> AxisId {
     AxisId::new(0).expect("0 is an axis")

@@ -7,7 +7,7 @@ use kmotiondef::structs::{Gather, GatherValueDef};
 use kmotiondef::variables::{GATHER, GATHER_BUFFER};
 use vm::memory::GuestMemory;
 
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Returns whether samples are being taken.
 pub(crate) fn is_recording(memory: &GuestMemory) -> bool {

@@ -6,7 +6,7 @@ use kmotiondef::{Axes, AxisId};
 use vm::memory::GuestMemory;
 
 use super::state::Servo;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Applies the changes of all masters in this tick, whatever their cause.
 pub(crate) fn follow(servo: &Servo, memory: &mut GuestMemory) {

@@ -11,7 +11,7 @@ use kmotiondef::{AxisId, Field, Scalar};
 use vm::memory::GuestMemory;
 
 use super::coordinated::buffer;
-use crate::views::{Typed, chan};
+use crate::views::{TypedAccess, chan};
 
 /// A spindle whose axis is read as an encoder.
 const ENCODER: i32 = 1;

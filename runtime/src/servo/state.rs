@@ -6,7 +6,7 @@ use kmotiondef::{Axes, AxisId, CodeAddr, Cycles, ThreadId};
 use vm::memory::GuestMemory;
 
 use super::cache::Cache;
-use super::coordinated::{Coordinated, path, system};
+use super::coordinated::{CoordinatedMotion, path, system};
 use super::moves::Planner;
 use super::stop::StopRequest;
 use super::trajectory::TICKS_PER_SECOND;
@@ -14,7 +14,7 @@ use super::{independent, recorder};
 use crate::io::Io;
 use crate::machine::Machine;
 use crate::out::{Message, Out};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The servo's state of an axis in addition to its structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -95,7 +95,7 @@ pub(crate) struct Servo {
     pub(crate) axes: [AxisMemory; Axes::MAX],
     /// The values derived from guest memory.
     pub(crate) cache: Cache,
-    pub(super) coordinated: Coordinated,
+    pub(super) coordinated: CoordinatedMotion,
     pub(super) stop_request: StopRequest,
     /// The planner of the firmware for moves of single axes.
     pub(crate) planner: Planner,

@@ -9,7 +9,7 @@ use kmotiondef::variables::{ADC_BUFFER_IN, CHAN, DAC_BUFFER, LAST_PWM};
 use kmotiondef::{GuestAddr, GuestType};
 use vm::memory::GuestMemory;
 
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Bytes of the amplifiers' words, the analog outputs and the analog inputs.
 const PWM_SIZE: usize = 64;

@@ -7,7 +7,7 @@ use kmotiondef::AxisId;
 
 /// The time at which a stop is reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Tells {
+pub(super) enum StopReport {
     /// If a motion was stopped.
     Stop,
     /// At every attempt: repeatedly for an axis outside of the coordinate system, which cannot be stopped.
@@ -19,7 +19,7 @@ pub(super) enum Tells {
 /// The feedhold, if one is requested.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StopRequest {
-    asked: Option<(String, Tells)>,
+    asked: Option<(String, StopReport)>,
     /// True if the primary thread has seen it: computing the stop takes it until its next slice.
     is_seen: bool,
     /// The axes that are still to be stopped, the last one first.
@@ -28,7 +28,7 @@ pub(crate) struct StopRequest {
 
 impl StopRequest {
     /// Asks, unless a stop is being computed.
-    pub(super) fn ask(&mut self, text: String, tells: Tells) {
+    pub(super) fn ask(&mut self, text: String, tells: StopReport) {
         if self.left.is_empty() {
             self.asked.get_or_insert((text, tells));
         }
@@ -36,7 +36,7 @@ impl StopRequest {
 
     /// Notes the request of a command, for which the primary thread has computed the stop.
     pub(super) fn ask_by_command(&mut self) {
-        self.ask(String::new(), Tells::Never);
+        self.ask(String::new(), StopReport::Never);
         self.is_seen = true;
     }
 
@@ -51,7 +51,7 @@ impl StopRequest {
     }
 
     /// Takes the request, which has been executed.
-    pub(super) fn take(&mut self) -> Option<(String, Tells)> {
+    pub(super) fn take(&mut self) -> Option<(String, StopReport)> {
         self.is_seen = false;
         self.asked.take()
     }

@@ -1,16 +1,16 @@
 //! Switching axes on and off, and setting them to zero.
 
-use kmotiondef::modes::{AtRest, OutputMode};
+use kmotiondef::modes::{OutputMode, RestOutputs};
 use kmotiondef::structs::{Chan, Iir};
 use kmotiondef::{AxisId, GuestAddr};
 use vm::memory::GuestMemory;
 
-use super::cache::Change;
+use super::cache::Invalidation;
 use super::output::write_dac;
 use super::state::{AxisMemory, Servo};
 use crate::io::amplifiers::{recirculate, store_pwm};
 use crate::machine::{Drive, Machine};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Puts an axis at a destination and enables it.
 pub(crate) fn enable(
@@ -30,7 +30,7 @@ pub(crate) fn enable(
     memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
     memory.set_axis(axis, Chan::LAST_VEL, 0.0);
     memory.set_axis(axis, Chan::ENABLE, 1);
-    servo.cache.invalidate(Change::Motion);
+    servo.cache.invalidate(Invalidation::Motion);
     servo.axes[axis.index()] = AxisMemory::rest(dest);
     machine.loads[axis].refer_to(dest);
 }
@@ -55,7 +55,7 @@ pub(crate) fn zero(servo: &mut Servo, machine: &mut Machine, memory: &mut GuestM
         clear_backlash(memory, axis, 0.0);
     }
     output_nothing(memory, axis);
-    servo.cache.invalidate(Change::Motion);
+    servo.cache.invalidate(Invalidation::Motion);
     servo.axes[axis.index()] = AxisMemory::rest(0.0);
     machine.loads[axis].refer_to(0.0);
 }
@@ -63,7 +63,7 @@ pub(crate) fn zero(servo: &mut Servo, machine: &mut Machine, memory: &mut GuestM
 /// Clears the state of an axis' compensation; its feed forward continues.
 pub(crate) fn reset_filters(servo: &mut Servo, memory: &mut GuestMemory, axis: AxisId) {
     clear_filters(memory, axis);
-    servo.cache.invalidate(Change::Motion);
+    servo.cache.invalidate(Invalidation::Motion);
 }
 
 /// Takes backlash as compensated at a destination.
@@ -89,7 +89,7 @@ fn clear_filters(memory: &mut GuestMemory, axis: AxisId) {
 /// Disables an axis: its output goes to zero; profile, destination and filters are unchanged.
 pub(crate) fn switch_off(servo: &mut Servo, machine: &mut Machine, memory: &mut GuestMemory, axis: AxisId) {
     memory.set_axis(axis, Chan::ENABLE, 0);
-    servo.cache.invalidate(Change::SwitchedOff);
+    servo.cache.invalidate(Invalidation::SwitchedOff);
     machine.loads[axis].drive = Drive::None;
     output_nothing(memory, axis);
 }
@@ -103,11 +103,11 @@ fn output_nothing(memory: &mut GuestMemory, axis: AxisId) {
     };
     let Some(mode) = mode else { return };
     match mode.traits().at_rest {
-        AtRest::Nothing => {}
-        AtRest::First => stop(&channels[..1]),
-        AtRest::Both => stop(&channels),
-        AtRest::FirstAndNext => stop(&[channels[0], channels[0].wrapping_add(1)]),
-        AtRest::Analog => {
+        RestOutputs::Nothing => {}
+        RestOutputs::First => stop(&channels[..1]),
+        RestOutputs::Both => stop(&channels),
+        RestOutputs::FirstAndNext => stop(&[channels[0], channels[0].wrapping_add(1)]),
+        RestOutputs::Analog => {
             write_dac(memory, axis, 0.0);
         }
     }

@@ -14,8 +14,8 @@ use super::output::driven;
 use crate::io::Io;
 use crate::io::bits::bit_state;
 use crate::machine::wiring::{channel_of, dac_value};
-use crate::machine::{Applied, Channel, Drive, Machine};
-use crate::views::{AxisView, Typed};
+use crate::machine::{AmplifierSignal, Channel, Drive, Machine};
+use crate::views::{AxisView, TypedAccess};
 
 /// Returns the drive of an axis' load in this tick, if it is not the axis' own output.
 #[inline(always)]
@@ -35,7 +35,7 @@ fn carried_to(io: &Io, memory: &mut GuestMemory, axis: AxisId, wired: Option<Cha
         Channel::Generator(_) if matches!(own, Some(Channel::Generator(_))) => None,
         Channel::Generator(_) => Some(Drive::None),
         Channel::Dac(dac) => {
-            let applied = Applied::Dac(f64::from(dac_value(memory, dac)));
+            let applied = AmplifierSignal::Dac(f64::from(dac_value(memory, dac)));
             Some(match driver(memory, Channel::Dac(dac)) {
                 Some(axis) => Drive::Loop(command(memory, axis), applied),
                 None => Drive::Open(applied),
@@ -44,7 +44,7 @@ fn carried_to(io: &Io, memory: &mut GuestMemory, axis: AxisId, wired: Option<Cha
         Channel::Relays(forward, back) => {
             let level = |bit| f64::from(u8::from(bit_state(io, memory, bit).0));
             // One count of an analog output: `ku` is the speed.
-            Some(Drive::Open(Applied::Dac(level(forward) - level(back))))
+            Some(Drive::Open(AmplifierSignal::Dac(level(forward) - level(back))))
         }
         Channel::Pwm(pwm) => Some(match driver(memory, Channel::Pwm(pwm)) {
             Some(axis) => driven(&AxisView::of(memory, axis), 0.0),
@@ -66,12 +66,14 @@ fn command(memory: &mut GuestMemory, axis: AxisId) -> f64 {
 }
 
 /// Returns the signal to a motor from a PWM channel's word. A vector turns nothing without an angle from an axis.
-fn decoded(word: i32) -> Applied {
+fn decoded(word: i32) -> AmplifierSignal {
     let within = |value: i32, limit: i32| (-limit..=limit).contains(&value).then(|| f64::from(value));
-    let current = within(word.wrapping_sub(41_984), MAX_PWMC_VALUE).map(Applied::Current);
+    let current = within(word.wrapping_sub(41_984), MAX_PWMC_VALUE).map(AmplifierSignal::Current);
     let antiphase = within(word.wrapping_sub(1280), MAX_PWM_VALUE);
     let recirculate = within(if word < 512 { word } else { 512_i32.wrapping_sub(word) }, MAX_PWMR_VALUE);
-    current.unwrap_or_else(|| Applied::Pwm(antiphase.or(recirculate.filter(|_| word >= 0)).unwrap_or(0.0)))
+    current.unwrap_or_else(|| {
+        AmplifierSignal::Pwm(antiphase.or(recirculate.filter(|_| word >= 0)).unwrap_or(0.0))
+    })
 }
 
 /// Returns whether the steps of an axis move its own load, unless a machine file connects the generator or the motor
@@ -106,10 +108,10 @@ mod tests {
     fn words_of_every_kind_are_decoded() {
         for value in [-100, 0, 100] {
             let number = f64::from(value);
-            assert_eq!(decoded(antiphase(value)), Applied::Pwm(number));
-            assert_eq!(decoded(recirculate(value)), Applied::Pwm(number));
-            assert_eq!(decoded(current(value)), Applied::Current(number));
+            assert_eq!(decoded(antiphase(value)), AmplifierSignal::Pwm(number));
+            assert_eq!(decoded(recirculate(value)), AmplifierSignal::Pwm(number));
+            assert_eq!(decoded(current(value)), AmplifierSignal::Current(number));
         }
-        assert_eq!(decoded(0x8000_0064_u32.cast_signed()), Applied::Pwm(0.0));
+        assert_eq!(decoded(0x8000_0064_u32.cast_signed()), AmplifierSignal::Pwm(0.0));
     }
 }

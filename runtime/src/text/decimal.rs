@@ -37,7 +37,7 @@ pub(crate) struct Steps {
 
 /// The digits that are needed, by the board's two algorithms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Keep {
+pub(crate) enum Precision {
     /// This many digits from the first that is not 0, as `%g` finds them.
     Significant(usize),
     /// This many digits after the decimal point, as `%f` finds them.
@@ -56,17 +56,17 @@ const HALF_OF_INFINITE: f64 = f64::from_bits(0x7FE0_0000_0000_0000);
 ///
 /// Zero has no digits, and neither has a denormal value, which the processor treats as zero. Values that are not finite
 /// count as 2 to the power of 1024.
-pub(crate) fn digits(magnitude: f64, keep: Keep) -> Digits {
+pub(crate) fn digits(magnitude: f64, keep: Precision) -> Digits {
     if magnitude < f64::MIN_POSITIVE {
         return Digits { digits: Vec::new(), point: 0, steps: Steps::default() };
     }
-    let Split { mut digits, fraction, point, steps } = match keep {
-        Keep::Significant(_) | Keep::Decimals(_) => split(magnitude),
-        Keep::Scientific(_) => split_scientific(magnitude),
+    let LeadingDigits { mut digits, fraction, point, steps } = match keep {
+        Precision::Significant(_) | Precision::Decimals(_) => split(magnitude),
+        Precision::Scientific(_) => split_scientific(magnitude),
     };
     let wanted = match keep {
-        Keep::Significant(count) | Keep::Scientific(count) => count as i64,
-        Keep::Decimals(count) => count as i64 + i64::from(point),
+        Precision::Significant(count) | Precision::Scientific(count) => count as i64,
+        Precision::Decimals(count) => count as i64 + i64::from(point),
     };
     let Ok(wanted) = usize::try_from(wanted) else {
         return Digits { digits: Vec::new(), point: 0, steps };
@@ -76,7 +76,7 @@ pub(crate) fn digits(magnitude: f64, keep: Keep) -> Digits {
 }
 
 /// A magnitude with its first digits.
-struct Split {
+struct LeadingDigits {
     digits: Vec<u8>,
     /// The rest after the first digits.
     fraction: f64,
@@ -96,7 +96,7 @@ fn finite(magnitude: f64) -> (f64, i32) {
 }
 
 /// Splits off the digits of the integer part, if it is not 0.
-fn split(magnitude: f64) -> Split {
+fn split(magnitude: f64) -> LeadingDigits {
     let (mut value, mut point) = finite(magnitude);
     while value > WHOLE_MAX {
         value *= 0.1;
@@ -118,7 +118,7 @@ fn split(magnitude: f64) -> Split {
             steps.zeros += 1;
         }
     }
-    Split { digits, fraction, point, steps }
+    LeadingDigits { digits, fraction, point, steps }
 }
 
 /// Bits of a number and of its quotients by ten.
@@ -128,7 +128,7 @@ fn divided_bits(number: u32) -> u32 {
 }
 
 /// With the first digit.
-fn split_scientific(magnitude: f64) -> Split {
+fn split_scientific(magnitude: f64) -> LeadingDigits {
     let (mut value, mut exponent) = finite(magnitude);
     while value >= 10.0 {
         value *= 0.1;
@@ -141,7 +141,7 @@ fn split_scientific(magnitude: f64) -> Split {
         steps.zeros += 1;
     }
     let whole = libm::trunc(value);
-    Split { digits: vec![whole as u8], fraction: value - whole, point: exponent + 1, steps }
+    LeadingDigits { digits: vec![whole as u8], fraction: value - whole, point: exponent + 1, steps }
 }
 
 /// Appends digits of the fraction until there are `count`.
@@ -230,7 +230,7 @@ fn push_exponent(text: &mut Vec<u8>, exponent: i32, letter: u8) {
 mod tests {
     use super::*;
 
-    fn check(value: f64, keep: Keep, expect: &str, point: i32) {
+    fn check(value: f64, keep: Precision, expect: &str, point: i32) {
         let found = digits(value, keep);
         let text: String = found.digits.iter().map(|digit| char::from(b'0' + digit)).collect();
         assert_eq!((text.as_str(), found.point), (expect, point), "{value} {keep:?}");
@@ -238,25 +238,25 @@ mod tests {
 
     #[test]
     fn halves_round_up_and_digits_come_from_the_fraction() {
-        check(0.5, Keep::Decimals(0), "1", 1);
-        check(2.5, Keep::Significant(1), "3", 1);
-        check(0.35, Keep::Decimals(1), "4", 0);
-        check(2.675, Keep::Decimals(2), "267", 1);
-        check(99.96, Keep::Decimals(1), "1000", 3);
+        check(0.5, Precision::Decimals(0), "1", 1);
+        check(2.5, Precision::Significant(1), "3", 1);
+        check(0.35, Precision::Decimals(1), "4", 0);
+        check(2.675, Precision::Decimals(2), "267", 1);
+        check(99.96, Precision::Decimals(1), "1000", 3);
     }
 
     #[test]
     fn large_values_lose_digits_as_on_the_board() {
-        check(9_007_199_254_740_992.0, Keep::Significant(19), "9007199254740996361", 16);
-        check(4462.0, Keep::Scientific(17), "44620000000000006", 4);
-        check(f64::INFINITY, Keep::Significant(6), "179769", 309);
+        check(9_007_199_254_740_992.0, Precision::Significant(19), "9007199254740996361", 16);
+        check(4462.0, Precision::Scientific(17), "44620000000000006", 4);
+        check(f64::INFINITY, Precision::Significant(6), "179769", 309);
     }
 
     #[test]
     fn small_values_have_zeros_after_the_point() {
-        check(0.00012, Keep::Significant(2), "12", -3);
-        check(4.9e-7, Keep::Decimals(6), "", -6);
-        check(5.1e-7, Keep::Decimals(6), "1", -5);
-        check(0.0004, Keep::Decimals(2), "", 0);
+        check(0.00012, Precision::Significant(2), "12", -3);
+        check(4.9e-7, Precision::Decimals(6), "", -6);
+        check(5.1e-7, Precision::Decimals(6), "1", -5);
+        check(0.0004, Precision::Decimals(2), "", 0);
     }
 }

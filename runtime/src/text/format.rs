@@ -5,7 +5,7 @@
 //! They are recorded in the vectors `printf.jsonl`, `printf-scanf.jsonl` and `printf-edge.jsonl`, which the tests below
 //! replay. There is one extension: `%lld` takes a `long long`, which the board's compiler does not have.
 
-use super::decimal::{Digits, Keep, digits};
+use super::decimal::{Digits, Precision, digits};
 use super::{Dialect, cost};
 
 /// The source of the values of the conversions.
@@ -50,14 +50,14 @@ impl Spec {
 
 /// A formatted text, and its cost on the board.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Formatted {
+pub(crate) struct FormattedText {
     /// The text.
     pub(crate) text: Vec<u8>,
     /// Cycles in addition to those of a call with an empty format.
     pub(crate) cycles: u32,
 }
 
-impl Formatted {
+impl FormattedText {
     /// Adds the cost of a part of the format.
     fn spend(&mut self, cycles: u32) {
         self.cycles = self.cycles.saturating_add(cycles);
@@ -74,8 +74,8 @@ pub(crate) fn format_counted<A: Arguments>(
     dialect: Dialect,
     format: &[u8],
     arguments: &mut A,
-) -> Result<Formatted, A::Error> {
-    let mut out = Formatted { text: Vec::with_capacity(format.len() + 16), cycles: 0 };
+) -> Result<FormattedText, A::Error> {
+    let mut out = FormattedText { text: Vec::with_capacity(format.len() + 16), cycles: 0 };
     let mut rest = format;
     let mut plain = 0_u32;
     while let Some((&byte, tail)) = rest.split_first() {
@@ -96,14 +96,14 @@ pub(crate) fn format_counted<A: Arguments>(
 }
 
 /// A parsed conversion: the specification, its letter (0 at the end of the format) and what follows.
-type Parsed<'f> = (Spec, u8, &'f [u8]);
+type ParsedConversion<'f> = (Spec, u8, &'f [u8]);
 
 /// Reads flags, width, precision and length up to the conversion letter.
 fn parse<'f, A: Arguments>(
     dialect: Dialect,
     format: &'f [u8],
     arguments: &mut A,
-) -> Result<Parsed<'f>, A::Error> {
+) -> Result<ParsedConversion<'f>, A::Error> {
     let mut spec = Spec { dialect, ..Spec::default() };
     let mut rest = format;
     while let Some((&flag, tail)) = rest.split_first() {
@@ -174,7 +174,7 @@ fn convert<A: Arguments>(
     spec: &Spec,
     letter: u8,
     arguments: &mut A,
-    out: &mut Formatted,
+    out: &mut FormattedText,
 ) -> Result<(), A::Error> {
     match letter {
         b'd' | b'i' if spec.long_long => signed(spec, arguments.long_long()?.cast_signed(), out),
@@ -240,7 +240,7 @@ fn sign(spec: &Spec, negative: bool) -> &'static [u8] {
 }
 
 /// `%d` and `%i`.
-fn signed(spec: &Spec, value: i64, out: &mut Formatted) {
+fn signed(spec: &Spec, value: i64, out: &mut FormattedText) {
     integer(spec, sign(spec, value < 0), &value.unsigned_abs().to_string(), out);
 }
 
@@ -252,7 +252,7 @@ fn blank(spec: &Spec) -> &'static [u8] {
 /// `%u`, `%x`, `%X` and `%o`; `h` keeps 16 bits.
 ///
 /// Board quirk: zeros that fill a width come before the prefix, and `%#o` always has one more zero.
-fn unsigned(spec: &Spec, value: u64, letter: u8, out: &mut Formatted) {
+fn unsigned(spec: &Spec, value: u64, letter: u8, out: &mut FormattedText) {
     let value = if spec.short { value & 0xffff } else { value };
     let (prefix, text) = match letter {
         b'x' => ("0x", format!("{value:x}")),
@@ -272,7 +272,7 @@ fn unsigned(spec: &Spec, value: u64, letter: u8, out: &mut Formatted) {
 }
 
 /// Digits of a signed integer after their sign.
-fn integer(spec: &Spec, head: &[u8], text: &str, out: &mut Formatted) {
+fn integer(spec: &Spec, head: &[u8], text: &str, out: &mut FormattedText) {
     let digits = precise(spec, text);
     out.spend(cost::decimal(digits.len() as u32, head == b"-"));
     pad(&filled(spec), head, digits.as_bytes(), out);
@@ -292,14 +292,14 @@ fn filled(spec: &Spec) -> Spec {
 }
 
 /// `%f`, `%e` and `%g`. Values that are not finite print like 2 to the power of 1024; these and zeros have no sign.
-fn float(spec: &Spec, value: f64, letter: u8, out: &mut Formatted) {
+fn float(spec: &Spec, value: f64, letter: u8, out: &mut FormattedText) {
     let magnitude = value.abs();
     let negative = value.is_finite() && value < 0.0 && magnitude >= f64::MIN_POSITIVE;
     let precision = spec.precision.unwrap_or(6);
     let keep = match letter {
-        b'f' => Keep::Decimals(precision),
-        b'e' | b'E' => Keep::Scientific(precision + 1),
-        _ => Keep::Significant(precision.max(1)),
+        b'f' => Precision::Decimals(precision),
+        b'e' | b'E' => Precision::Scientific(precision + 1),
+        _ => Precision::Significant(precision.max(1)),
     };
     let found = digits(magnitude, keep);
     let text = match letter {
@@ -324,7 +324,7 @@ fn fixed(spec: &Spec, magnitude: f64, precision: usize, found: &Digits) -> Vec<u
     if precision > 0 || !is_small || spec.is_nearer_to_c() {
         return found.fixed(precision, spec.alternate);
     }
-    let first = digits(magnitude, Keep::Decimals(1));
+    let first = digits(magnitude, Precision::Decimals(1));
     first.fixed(usize::from(!first.digits.is_empty()), true)
 }
 
@@ -355,7 +355,7 @@ fn significant(digits: &[u8]) -> usize {
 }
 
 /// Writes head and body in the field's width.
-fn pad(spec: &Spec, head: &[u8], body: &[u8], out: &mut Formatted) {
+fn pad(spec: &Spec, head: &[u8], body: &[u8], out: &mut FormattedText) {
     let fill = spec.width.saturating_sub(head.len() + body.len());
     if spec.width > 0 {
         out.spend(cost::width(fill as u32));
@@ -443,7 +443,7 @@ pub(super) mod tests {
     }
 
     /// The text of a call and its cost.
-    pub(in crate::text) fn counted(pattern: &[u8], list: Vec<Argument>) -> Formatted {
+    pub(in crate::text) fn counted(pattern: &[u8], list: Vec<Argument>) -> FormattedText {
         let Ok(formatted) =
             format_counted(Dialect::Firmware4, pattern, &mut List { list: list.into_iter(), taken: 0 });
         formatted

@@ -10,10 +10,10 @@ mod strict;
 #[cfg(test)]
 pub(crate) mod vectors;
 
-pub(crate) use decimal::{Digits, Keep, digits, place_of_point};
+pub(crate) use decimal::{Digits, Precision, digits, place_of_point};
 pub(crate) use format::{Arguments, format, format_counted};
 pub(crate) use number::{float_prefix, integer_prefix, legible, magnitude};
-pub(crate) use scan::{Scanned, Sink, scan};
+pub(crate) use scan::{ScannedValue, Sink, scan};
 pub(crate) use scanned::float_value;
 
 /// The rules of `printf` and `sscanf` that a firmware follows.

@@ -10,7 +10,7 @@ use super::{Dialect, cost, strict};
 
 /// One converted value, in the form in which it is stored.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Scanned<'t> {
+pub(crate) enum ScannedValue<'t> {
     /// An 8-bit integer (`%hhd`).
     Byte(i8),
     /// A 16-bit integer (`%hd`).
@@ -34,7 +34,7 @@ pub(crate) trait Sink {
     /// The error of a value that cannot be stored.
     type Error;
     /// Stores a value at the next address.
-    fn store(&mut self, value: Scanned<'_>) -> Result<(), Self::Error>;
+    fn store(&mut self, value: ScannedValue<'_>) -> Result<(), Self::Error>;
 }
 
 /// The length modifier of a conversion, which gives the size of its variable.
@@ -63,7 +63,7 @@ pub(super) struct Spec {
 
 /// The continuation after a directive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Next {
+enum Continuation {
     Go,
     /// The call ends with the count so far.
     End,
@@ -114,9 +114,9 @@ fn obey<S: Sink>(scanner: &mut Scanner<'_>, format: &[u8], sink: &mut S) -> Resu
             scanner.character(byte)
         };
         match next {
-            Next::Go => {}
-            Next::End => break,
-            Next::Fail => return Ok(-1),
+            Continuation::Go => {}
+            Continuation::End => break,
+            Continuation::Fail => return Ok(-1),
         }
     }
     Ok(scanner.stored)
@@ -179,17 +179,17 @@ impl<'t> Scanner<'t> {
     }
 
     /// An ordinary character, or white space.
-    fn character(&mut self, byte: u8) -> Next {
+    fn character(&mut self, byte: u8) -> Continuation {
         if byte.is_ascii_whitespace() && !self.behind_character {
             self.skip_space();
-            return Next::Go;
+            return Continuation::Go;
         }
         self.behind_character = true;
         if self.rest().first() != Some(&byte) {
-            return Next::End;
+            return Continuation::End;
         }
         self.at += 1;
-        Next::Go
+        Continuation::Go
     }
 
     /// At most `width` bytes of the remaining text.
@@ -206,7 +206,7 @@ impl<'t> Scanner<'t> {
         letter: u8,
         set: &[u8],
         sink: &mut S,
-    ) -> Result<Next, S::Error> {
+    ) -> Result<Continuation, S::Error> {
         if !matches!(letter, b'c' | b'[' | b'n') {
             self.skip_space();
         }
@@ -221,16 +221,16 @@ impl<'t> Scanner<'t> {
             },
             b'c' => {
                 let count = window.len().min(spec.width.unwrap_or(1));
-                (Scanned::Chars(&window[..count]), count)
+                (ScannedValue::Chars(&window[..count]), count)
             }
             b'n' => {
                 if !spec.discard {
-                    sink.store(Scanned::Int(self.at as i32))?;
+                    sink.store(ScannedValue::Int(self.at as i32))?;
                 }
-                return Ok(Next::Go);
+                return Ok(Continuation::Go);
             }
             b'%' => return Ok(self.percent()),
-            _ => return Ok(Next::Go),
+            _ => return Ok(Continuation::Go),
         };
         // Board quirk: a set that matches nothing stores an empty string, which counts, and consumes one character too
         // many at the end; a string stores an empty one there, too, which does not count.
@@ -242,26 +242,26 @@ impl<'t> Scanner<'t> {
             sink.store(value)?;
             self.stored += i32::from(is_counted);
         }
-        Ok(Next::Go)
+        Ok(Continuation::Go)
     }
 
     /// `%%`. Board quirk: without a percent sign in the text the call fails, whatever was converted.
-    fn percent(&mut self) -> Next {
+    fn percent(&mut self) -> Continuation {
         if self.rest().first() != Some(&b'%') {
-            return Next::Fail;
+            return Continuation::Fail;
         }
         self.at += 1;
-        Next::Go
+        Continuation::Go
     }
 }
 
 /// The bytes that belong to a string conversion.
-pub(super) fn span(window: &[u8], belongs: impl Fn(u8) -> bool) -> (Scanned<'_>, usize) {
+pub(super) fn span(window: &[u8], belongs: impl Fn(u8) -> bool) -> (ScannedValue<'_>, usize) {
     let count = window.iter().take_while(|&&byte| belongs(byte)).count();
-    (Scanned::Text(&window[..count]), count)
+    (ScannedValue::Text(&window[..count]), count)
 }
 
-fn integer<'t>(spec: &Spec, letter: u8, window: &'t [u8]) -> (Scanned<'t>, usize) {
+fn integer<'t>(spec: &Spec, letter: u8, window: &'t [u8]) -> (ScannedValue<'t>, usize) {
     let base = match letter {
         b'd' => Base::Decimal,
         b'u' => Base::Unsigned,
@@ -274,19 +274,19 @@ fn integer<'t>(spec: &Spec, letter: u8, window: &'t [u8]) -> (Scanned<'t>, usize
 }
 
 /// An integer as a conversion stores it.
-pub(super) fn converted(spec: &Spec, value: u64) -> Scanned<'static> {
+pub(super) fn converted(spec: &Spec, value: u64) -> ScannedValue<'static> {
     match spec.length {
-        Length::Byte => Scanned::Byte(value as i8),
-        Length::Short => Scanned::Short(value as i16),
-        Length::Long => Scanned::Long(value),
-        Length::Plain | Length::LongLong => Scanned::Int(value as i32),
+        Length::Byte => ScannedValue::Byte(value as i8),
+        Length::Short => ScannedValue::Short(value as i16),
+        Length::Long => ScannedValue::Long(value),
+        Length::Plain | Length::LongLong => ScannedValue::Int(value as i32),
     }
 }
 
-pub(super) fn float<'t>(spec: &Spec, text: &'t [u8]) -> (Scanned<'t>, usize) {
+pub(super) fn float<'t>(spec: &Spec, text: &'t [u8]) -> (ScannedValue<'t>, usize) {
     let (value, used) = float_value(text);
     let is_double = matches!(spec.length, Length::Long | Length::LongLong);
-    (if is_double { Scanned::Double(value) } else { Scanned::Float(single(value)) }, used)
+    (if is_double { ScannedValue::Double(value) } else { ScannedValue::Float(single(value)) }, used)
 }
 
 /// A double as the float that is stored: too large a value becomes infinite.
@@ -353,16 +353,16 @@ mod tests {
     impl Sink for Variables {
         type Error = Infallible;
 
-        fn store(&mut self, value: Scanned<'_>) -> Result<(), Infallible> {
+        fn store(&mut self, value: ScannedValue<'_>) -> Result<(), Infallible> {
             let bytes = match value {
-                Scanned::Byte(value) => value.to_le_bytes().to_vec(),
-                Scanned::Short(value) => value.to_le_bytes().to_vec(),
-                Scanned::Int(value) => value.to_le_bytes().to_vec(),
-                Scanned::Long(value) => value.to_le_bytes().to_vec(),
-                Scanned::Float(value) => value.to_le_bytes().to_vec(),
-                Scanned::Double(value) => value.to_le_bytes().to_vec(),
-                Scanned::Chars(text) => text.to_vec(),
-                Scanned::Text(text) => [text, &[0]].concat(),
+                ScannedValue::Byte(value) => value.to_le_bytes().to_vec(),
+                ScannedValue::Short(value) => value.to_le_bytes().to_vec(),
+                ScannedValue::Int(value) => value.to_le_bytes().to_vec(),
+                ScannedValue::Long(value) => value.to_le_bytes().to_vec(),
+                ScannedValue::Float(value) => value.to_le_bytes().to_vec(),
+                ScannedValue::Double(value) => value.to_le_bytes().to_vec(),
+                ScannedValue::Chars(text) => text.to_vec(),
+                ScannedValue::Text(text) => [text, &[0]].concat(),
             };
             // A row without its argument stores to the address in some register of the board.
             let Some(target) = self.targets.next() else { return Ok(()) };

@@ -4,7 +4,7 @@
 //! Recorded in `fw5-text.jsonl`, which the test below replays. Numbers have the same values as in firmware 4.34.
 
 use super::scan::{
-    Conversions, Scanned, Sink, Spec, bracketed, converted, float, has_nothing_for, parse, span,
+    Conversions, ScannedValue, Sink, Spec, bracketed, converted, float, has_nothing_for, parse, span,
 };
 use super::scanned::{Base, limited, magnitude};
 use super::{Dialect, cost};
@@ -90,7 +90,7 @@ impl<'t> Scanner<'t> {
     ) -> Result<Option<Refusal>, S::Error> {
         if letter == b'n' {
             if !spec.discard {
-                sink.store(Scanned::Int(self.at as i32))?;
+                sink.store(ScannedValue::Int(self.at as i32))?;
             }
             return Ok(None);
         }
@@ -124,7 +124,7 @@ impl<'t> Scanner<'t> {
             },
             b'c' => {
                 let count = window.len().min(spec.width.unwrap_or(1));
-                (Scanned::Chars(&window[..count]), count)
+                (ScannedValue::Chars(&window[..count]), count)
             }
             _ => return Ok(Some(Refusal::Mismatch)),
         };

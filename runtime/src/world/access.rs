@@ -2,10 +2,10 @@
 
 use kmotiondef::Cycles;
 use vm::memory::GuestMemory;
-use vm::scheduler::Turn;
+use vm::scheduler::SliceOwner;
 
 use crate::io::Io;
-use crate::machine::attached::Attached;
+use crate::machine::attached::AttachedDevice;
 use crate::machine::{Lines, Machine};
 use crate::out::Out;
 use crate::pc::Pc;
@@ -27,7 +27,7 @@ impl WorldAccess<'_> {
     }
 
     /// Attaches a device.
-    pub(crate) fn attach(&mut self, device: Box<dyn Attached>, memory: &GuestMemory) {
+    pub(crate) fn attach(&mut self, device: Box<dyn AttachedDevice>, memory: &GuestMemory) {
         self.machine.attach(device, self.io, self.out, memory, self.now);
     }
 }
@@ -35,6 +35,6 @@ impl WorldAccess<'_> {
 /// The owner of the processor, and the start of its slice.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment {
-    pub(crate) turn: Turn,
+    pub(crate) turn: SliceOwner,
     pub(crate) slice_start: Cycles,
 }

@@ -5,7 +5,7 @@
 use kmotiondef::Bit;
 
 use super::outside;
-use crate::machine::attached::Attached;
+use crate::machine::attached::AttachedDevice;
 use chips::kanalog::ADC_CHANNELS;
 
 /// A device that has been described: its name and its settings, in words.
@@ -20,7 +20,7 @@ pub struct DeviceSpec {
 /// A kind of device.
 struct Row {
     name: &'static str,
-    build: fn(&mut Settings<'_>) -> Result<Box<dyn Attached>, String>,
+    build: fn(&mut Settings<'_>) -> Result<Box<dyn AttachedDevice>, String>,
 }
 
 /// All kinds.
@@ -43,8 +43,8 @@ const DEVICES: &[Row] = &[
     Row { name: "modbus", build: |settings| boxed(outside::modbus::Modbus::new(settings)) },
 ];
 
-fn boxed<T: Attached + 'static>(device: Result<T, String>) -> Result<Box<dyn Attached>, String> {
-    device.map(|device| Box::new(device) as Box<dyn Attached>)
+fn boxed<T: AttachedDevice + 'static>(device: Result<T, String>) -> Result<Box<dyn AttachedDevice>, String> {
+    device.map(|device| Box::new(device) as Box<dyn AttachedDevice>)
 }
 
 impl DeviceSpec {
@@ -52,7 +52,7 @@ impl DeviceSpec {
     ///
     /// # Errors
     /// A name that is not in the table, a setting that is missing, unknown or wrong.
-    pub(crate) fn build(&self) -> Result<Box<dyn Attached>, String> {
+    pub(crate) fn build(&self) -> Result<Box<dyn AttachedDevice>, String> {
         let Some(row) = DEVICES.iter().find(|row| row.name == self.name) else {
             let names: Vec<_> = DEVICES.iter().map(|row| row.name).collect();
             return Err(format!("there is no device `{}`; known: {}", self.name, names.join(", ")));

@@ -11,7 +11,7 @@ pub(crate) use access::{Moment, WorldAccess};
 use kmotiondef::{Cycles, ThreadId};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
-use vm::scheduler::Turn;
+use vm::scheduler::SliceOwner;
 
 use crate::io::Io;
 use crate::io::changes;
@@ -188,7 +188,9 @@ impl World {
 fn tell_change(access: &mut WorldAccess<'_>, moment: Moment, BitChange { at, bit, level }: BitChange) {
     let is_generated = access.io.pins.is_watched(bit) && access.io.pins.is_generated(bit);
     let thread = match moment.turn {
-        Turn::User(thread) if (moment.slice_start..access.now).contains(&at) && !is_generated => Some(thread),
+        SliceOwner::User(thread) if (moment.slice_start..access.now).contains(&at) && !is_generated => {
+            Some(thread)
+        }
         _ => None,
     };
     access.out.tell(at, EventKind::Trace(Record::Bit { bit, level, thread }));

@@ -129,7 +129,7 @@ impl Inst {
     /// The registers that it reads, except the condition register (which is read in stage 1).
     pub fn reads(self) -> impl Iterator<Item = Read> {
         let stages = self.timing().stages();
-        let mut found = Few::default();
+        let mut found = SmallList::default();
         for (field, kind) in self.op().row().operands {
             if field.is_written() && !self.reads_destination() {
                 continue;
@@ -161,7 +161,7 @@ impl Inst {
     /// The registers it writes.
     pub fn writes(self) -> impl Iterator<Item = Write> {
         let stages = self.timing().stages();
-        let mut found = Few::default();
+        let mut found = SmallList::default();
         for (field, kind) in self.op().row().operands {
             match self.operand(*field, *kind) {
                 Operand::Reg(reg) if field.is_written() => found.push(Write { reg, stage: stages.write_low }),
@@ -202,18 +202,18 @@ impl Inst {
 
 /// A list of at most four items, without allocation.
 #[derive(Clone, Copy)]
-struct Few<T> {
+struct SmallList<T> {
     items: [Option<T>; 4],
     len: usize,
 }
 
-impl<T> Default for Few<T> {
+impl<T> Default for SmallList<T> {
     fn default() -> Self {
         Self { items: [const { None }; 4], len: 0 }
     }
 }
 
-impl<T> Few<T> {
+impl<T> SmallList<T> {
     fn push(&mut self, item: T) {
         if let Some(slot) = self.items.get_mut(self.len) {
             *slot = Some(item);

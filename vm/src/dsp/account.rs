@@ -44,7 +44,7 @@ pub struct Time {
 }
 
 /// A context, a packet of it, and the firmware function that this calls.
-pub(super) type Spot = (ContextId, CodeAddr, Option<GuestAddr>);
+pub(super) type PacketSite = (ContextId, CodeAddr, Option<GuestAddr>);
 
 /// The branch by which a packet was reached.
 #[derive(Clone, Copy, Debug)]
@@ -59,17 +59,17 @@ pub(super) struct Branch {
 
 /// A call that has not returned.
 #[derive(Clone, Copy, Debug)]
-struct Open {
+struct OpenCall {
     /// The return address.
-    back: u32,
+    return_address: u32,
     /// The callers before it.
     outer: Callers,
 }
 
 /// The calls of a context that have not returned.
 #[derive(Clone, Debug, Default)]
-struct Trail {
-    open: Vec<Open>,
+struct CallTrail {
+    open: Vec<OpenCall>,
     callers: Callers,
 }
 
@@ -82,7 +82,7 @@ pub struct Account {
     /// Each list of calls as the list before it and the last call; the list 0 is empty.
     lists: Vec<(Callers, CodeAddr)>,
     known: BTreeMap<(Callers, CodeAddr), Callers>,
-    trails: [Trail; ContextId::COUNT],
+    trails: [CallTrail; ContextId::COUNT],
 }
 
 impl Account {
@@ -99,19 +99,19 @@ impl Account {
 
     /// A context starts again.
     pub(super) fn begin(&mut self, context: ContextId) {
-        self.trails[context.index()] = Trail::default();
+        self.trails[context.index()] = CallTrail::default();
     }
 
     /// A packet of a context has ended, and `next` is the next one.
     pub(super) fn follow(&mut self, context: ContextId, next: u32, branch: Branch) {
         let trail = &mut self.trails[context.index()];
-        if let Some(call) = trail.open.pop_if(|call| call.back == next) {
+        if let Some(call) = trail.open.pop_if(|call| call.return_address == next) {
             trail.callers = call.outer;
             return;
         }
         // A jump to the beginning of a function in progress is not a call, nor is a tail jump from its end to another
         // function.
-        let is_new = trail.open.last().is_none_or(|call| call.back != branch.link);
+        let is_new = trail.open.last().is_none_or(|call| call.return_address != branch.link);
         let is_call = branch.enters && is_new && is_return_of(branch.link, branch.from.as_guest_addr().get());
         if !is_call || trail.open.len() >= DEEPEST {
             return;
@@ -122,21 +122,21 @@ impl Account {
             lists.push(list);
             Callers(lists.len())
         });
-        trail.open.push(Open { back: branch.link, outer: trail.callers });
+        trail.open.push(OpenCall { return_address: branch.link, outer: trail.callers });
         trail.callers = callers;
     }
 
-    fn spender(&self, (context, at, firmware): Spot) -> Spender {
+    fn spender(&self, (context, at, firmware): PacketSite) -> Spender {
         Spender { context, at, firmware, callers: self.trails[context.index()].callers }
     }
 
-    pub(super) fn compute(&mut self, place: Spot, computing: Cycles) {
+    pub(super) fn compute(&mut self, place: PacketSite, computing: Cycles) {
         let spender = self.spender(place);
         self.spent.entry(spender).or_default().computing += computing;
     }
 
     /// A context begins to wait.
-    pub(super) fn wait(&mut self, place: Spot, now: Cycles) {
+    pub(super) fn wait(&mut self, place: PacketSite, now: Cycles) {
         self.waits[place.0.index()] = Some((self.spender(place), now));
     }
 

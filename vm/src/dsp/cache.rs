@@ -4,7 +4,7 @@
 //! needs no search. Pages of 4 KiB record which packet begins at each word, and which 32-byte lines hold decoded words:
 //! a store to such a line drops only the packets of that line.
 
-use super::decode::{Decoded, FORESEEN, Micro, NoPacket, Packet, STEADY, decode};
+use super::decode::{DecodedPacket, FORESEEN, MicroOp, NoPacket, Packet, STEADY, decode};
 use super::memory::Memory;
 use super::work::Work;
 
@@ -40,7 +40,7 @@ struct Page {
 #[derive(Debug)]
 pub(super) struct Cache {
     packets: Vec<Packet>,
-    micros: Vec<Micro>,
+    micros: Vec<MicroOp>,
     pages: Box<[Option<Box<Page>>]>,
     /// Number of times that decoded packets were dropped.
     generation: u64,
@@ -84,7 +84,7 @@ const fn line_bit(at: u32) -> u128 {
 }
 
 /// Changes each product of doubles of a packet.
-fn each_product(packet: Packet, micros: &mut [Micro], change: impl Fn(&mut Micro)) {
+fn each_product(packet: Packet, micros: &mut [MicroOp], change: impl Fn(&mut MicroOp)) {
     let first = packet.first as usize;
     let own = micros[first..first + usize::from(packet.count)].iter_mut();
     own.filter(|micro| micro.work == Work::Mpydp).for_each(change);
@@ -94,14 +94,14 @@ impl Cache {
     /// The packets from this index on, and the instructions from the first one of these packets on: instructions are
     /// stored in the order of their packets.
     #[inline(always)]
-    pub(super) fn follow(&self, index: u32) -> (&[Packet], &[Micro]) {
+    pub(super) fn follow(&self, index: u32) -> (&[Packet], &[MicroOp]) {
         let packets = &self.packets[index as usize..];
         let first = packets.first().map_or(0, |packet| packet.first as usize);
         (packets, &self.micros[first..])
     }
 
     /// The packet with this index, and its instructions.
-    pub(super) fn packet(&self, index: u32) -> (Packet, &[Micro]) {
+    pub(super) fn packet(&self, index: u32) -> (Packet, &[MicroOp]) {
         let packet = self.packets[index as usize];
         let first = packet.first as usize;
         (packet, &self.micros[first..first + usize::from(packet.count)])
@@ -136,7 +136,7 @@ impl Cache {
         let start = self.packets.len();
         let mut next = at;
         while self.packets.len() < start + RUN && self.known(next).is_none() {
-            let Decoded { packet, writes } = match decode(memory, next, &mut self.micros) {
+            let DecodedPacket { packet, writes } = match decode(memory, next, &mut self.micros) {
                 Ok(packet) => packet,
                 Err(reason) if self.packets.len() == start => return Err(reason),
                 Err(_) => break,

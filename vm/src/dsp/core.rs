@@ -1,14 +1,14 @@
 //! One processor context: executes packet after packet.
 
 use super::cache::Cache;
-use super::decode::{Micro, NoPacket, STACK, places};
-use super::idle::{Arrival, Idle};
+use super::decode::{MicroOp, NoPacket, STACK, places};
+use super::idle::{BranchAction, IdleDetector};
 use super::loops::Loops;
 use super::memory::Memory;
 #[cfg(feature = "native")]
 use super::native::{Account, RegionTranslator, TRANSLATOR};
-use super::pipeline::{Passed, State};
-use super::watched::Watched;
+use super::pipeline::{CyclesEnd, State};
+use super::watched::WatchedMemory;
 use crate::trap::{Fault, TrapKind};
 
 /// Cycles after which code that never allows an interrupt is taken for an endless loop: 1 ms.
@@ -50,7 +50,7 @@ impl HotCode {
 
 /// The points at which a core stops when its cycles are used up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Border {
+enum StopPoints {
     /// At points where an interrupt is possible; a long time without one is a fault.
     #[default]
     Slice,
@@ -70,10 +70,10 @@ pub struct Core {
     packets: u64,
     /// The instruction of the last fault.
     faulted_at: Option<u32>,
-    border: Border,
+    border: StopPoints,
     /// The stop that was reported last: the next run executes its packet.
     passed: Option<u32>,
-    idle: Idle,
+    idle: IdleDetector,
     skips: bool,
     loops: Loops,
     /// Hot code translated to host code, if translation is on.
@@ -132,7 +132,7 @@ impl Core {
 
     /// Executes packets until no cycles are left and an interrupt is possible.
     pub fn run<M: Memory>(&mut self, memory: &mut M) -> Halt {
-        self.border = Border::Slice;
+        self.border = StopPoints::Slice;
         self.idle.forget();
         self.run_to_border(memory)
     }
@@ -143,7 +143,7 @@ impl Core {
         memory: &mut M,
         count: &mut dyn FnMut(u32, i64, &State),
     ) -> Halt {
-        self.border = Border::Slice;
+        self.border = StopPoints::Slice;
         self.count_to_border(memory, &mut |_, pc, cycles, state| count(pc, cycles, state))
     }
 
@@ -155,7 +155,7 @@ impl Core {
         until: u64,
         count: &mut dyn FnMut(&M, u32, i64, &State),
     ) -> Halt {
-        self.border = Border::Next;
+        self.border = StopPoints::Next;
         self.state.clock.set_end(until);
         self.count_to_border(memory, count)
     }
@@ -167,7 +167,7 @@ impl Core {
         until: u64,
         count: &mut dyn FnMut(&M, u32, i64, &State),
     ) -> Halt {
-        self.border = Border::Interrupt(until);
+        self.border = StopPoints::Interrupt(until);
         self.state.clock.deadline = self.state.clock.cycle;
         self.count_to_border(memory, count)
     }
@@ -234,7 +234,7 @@ impl Core {
 
     /// Executes packets up to the first that begins in cycle `until` or later.
     pub fn run_until<M: Memory>(&mut self, memory: &mut M, until: u64) -> Halt {
-        self.border = Border::Next;
+        self.border = StopPoints::Next;
         self.idle.forget();
         self.state.clock.set_end(until);
         self.run_to_border(memory)
@@ -242,7 +242,7 @@ impl Core {
 
     /// Acts as [`run_until`](Self::run_until), but stops at the first point at which an interrupt is possible.
     pub fn run_to_interrupt<M: Memory>(&mut self, memory: &mut M, until: u64) -> Halt {
-        self.border = Border::Interrupt(until);
+        self.border = StopPoints::Interrupt(until);
         self.idle.forget();
         self.state.clock.deadline = self.state.clock.cycle;
         self.run_to_border(memory)
@@ -344,9 +344,9 @@ impl Core {
     /// Called after a backward branch: skips a loop that changes nothing, up to the next border.
     fn went_back<M: Memory>(&mut self, memory: &M) {
         match self.idle.arrive(self.state.pc, self.state.cycle()) {
-            Arrival::Pass => {}
-            Arrival::Look => self.idle.look(self.state.picture(), self.packets, memory.touches()),
-            Arrival::Again => self.skip_iterations(memory),
+            BranchAction::Pass => {}
+            BranchAction::TakePicture => self.idle.look(self.state.picture(), self.packets, memory.touches()),
+            BranchAction::PictureReached => self.skip_iterations(memory),
         }
     }
 
@@ -354,7 +354,7 @@ impl Core {
     fn skip_iterations<M: Memory>(&mut self, memory: &M) {
         let picture = self.state.picture();
         let ended = self.idle.end(&picture, self.packets, memory.touches(), |at| memory.fetch(at));
-        let (Some((period, packets)), true) = (ended, self.border == Border::Next) else { return };
+        let (Some((period, packets)), true) = (ended, self.border == StopPoints::Next) else { return };
         let left = self.state.clock.left().max(0).cast_unsigned();
         let iterations = left / period;
         // The slot of a result is its cycle modulo 16.
@@ -372,9 +372,9 @@ impl Core {
         }
         let Self { state, cache, idle, loops, stack, .. } = self;
         let Some(found) = loops.find(state, cache, memory) else { return Ok(()) };
-        let mut memory = Watched::new(memory, cache, idle);
+        let mut memory = WatchedMemory::new(memory, cache, idle);
         let ran = found.run(state, &mut memory, stack.as_mut(), &mut self.packets);
-        let Watched { inner, hits, .. } = memory;
+        let WatchedMemory { inner, hits, .. } = memory;
         if let Err((_, Some(number))) = ran {
             self.faulted_at = places(inner, state.pc).get(number).copied();
         }
@@ -395,7 +395,7 @@ impl Core {
     fn run_from<const ALL: bool, M: Memory>(&mut self, index: u32, memory: &mut M) -> Result<(), Halt> {
         let Self { state, cache, idle, .. } = self;
         let (packets, mut micros) = cache.follow(index);
-        let mut memory = Watched::new(memory, cache, idle);
+        let mut memory = WatchedMemory::new(memory, cache, idle);
         for packet in packets {
             if ALL
                 && state.clock.is_over()
@@ -426,7 +426,7 @@ impl Core {
             }
             state.refuse_undefined().map_err(|fault| Halt::Faulted(fault.into()))?;
             state.pc = packet.end;
-            if state.advance(packet.cycles) == Passed::Branched
+            if state.advance(packet.cycles) == CyclesEnd::Branched
                 || !ALL
                 || !packet.is_linked
                 || memory.hits[0].is_some()
@@ -460,7 +460,7 @@ impl Core {
     }
 }
 
-impl Border {
+impl StopPoints {
     /// The cycles are over: why the core stops here, if it does.
     fn halt(self, state: &State) -> Option<Halt> {
         let is_interruptible = state.is_interruptible();
@@ -491,7 +491,7 @@ impl StackWatch {
 
 /// The address of one of the instructions of a packet.
 #[cold]
-fn instruction<M: Memory>(memory: &M, packet: u32, micros: &[Micro], micro: &Micro) -> Option<u32> {
+fn instruction<M: Memory>(memory: &M, packet: u32, micros: &[MicroOp], micro: &MicroOp) -> Option<u32> {
     let number = micros.iter().position(|other| std::ptr::eq(other, micro))?;
     places(memory, packet).get(number).copied()
 }

@@ -9,7 +9,7 @@ use c67x::{Branch, Field, Inst, Kind, Offset, Operand, PARALLEL, Reg, Update, ta
 
 use super::memory::Memory;
 use super::pipeline::BRANCH;
-use super::work::{Plan, Work, plan};
+use super::work::{Work, WorkPlan, plan};
 use crate::trap::Fault;
 
 /// The register that always holds 1: the condition of unconditional instructions.
@@ -45,7 +45,7 @@ const MOST: usize = 8;
 
 /// An instruction with its operands resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Micro {
+pub(super) struct MicroOp {
     /// The operation.
     pub(super) work: Work,
     /// The register tested.
@@ -94,7 +94,7 @@ pub(super) struct Packet {
 }
 
 /// A decoded packet, with the properties that the packet before it needs.
-pub(super) struct Decoded {
+pub(super) struct DecodedPacket {
     pub(super) packet: Packet,
     /// The registers that it writes in E1, as bits.
     pub(super) writes: u64,
@@ -129,7 +129,11 @@ pub(super) fn instructions<M: Memory>(memory: &M, at: u32) -> Vec<Inst> {
 }
 
 /// Decodes the packet at `at`; its instructions are appended to `micros`.
-pub(super) fn decode<M: Memory>(memory: &M, at: u32, micros: &mut Vec<Micro>) -> Result<Decoded, NoPacket> {
+pub(super) fn decode<M: Memory>(
+    memory: &M,
+    at: u32,
+    micros: &mut Vec<MicroOp>,
+) -> Result<DecodedPacket, NoPacket> {
     let (insts, end) = fetch(memory, at)?;
     let cycles = insts.iter().map(|(_, inst)| inst.cycles()).max().unwrap_or(1);
     let first = micros.len() as u32;
@@ -148,11 +152,11 @@ pub(super) fn decode<M: Memory>(memory: &M, at: u32, micros: &mut Vec<Micro>) ->
         is_idle: insts.iter().any(|(_, inst)| plan(*inst).work == Work::Idle),
         end,
     };
-    Ok(Decoded { packet, writes })
+    Ok(DecodedPacket { packet, writes })
 }
 
 /// The delays after which results, branches and later reads of a packet may happen, as bits.
-fn delays(insts: &[(u32, Inst)], micros: &[Micro]) -> u16 {
+fn delays(insts: &[(u32, Inst)], micros: &[MicroOp]) -> u16 {
     let results = insts.iter().flat_map(|(_, inst)| inst.writes()).map(|write| u32::from(write.stage));
     let results = results.filter(|stage| *stage > 1).fold(0, |bits, stage| bits | 1 << stage);
     let has_branch = insts.iter().any(|(_, inst)| inst.branch().is_some());
@@ -181,9 +185,9 @@ fn fetch<M: Memory>(memory: &M, at: u32) -> Result<(Vec<(u32, Inst)>, u32), NoPa
 }
 
 /// An instruction with the facts that determine the order.
-struct Ordered {
+struct OrderedInst {
     at: u32,
-    micro: Micro,
+    micro: MicroOp,
     inst: Inst,
     /// Registers read in E1, as bits.
     reads: u64,
@@ -192,11 +196,11 @@ struct Ordered {
 }
 
 /// The instructions with their addresses, in an order in which each may write at once, or defers.
-fn order(insts: &[(u32, Inst)]) -> Result<Vec<(u32, Micro)>, Fault> {
-    let mut open: Vec<Ordered> = insts
+fn order(insts: &[(u32, Inst)]) -> Result<Vec<(u32, MicroOp)>, Fault> {
+    let mut open: Vec<OrderedInst> = insts
         .iter()
         .filter(|(_, inst)| plan(*inst).work != Work::Nop)
-        .map(|(at, inst)| Ordered {
+        .map(|(at, inst)| OrderedInst {
             at: *at,
             micro: resolve(*at, *inst),
             inst: *inst,
@@ -236,7 +240,7 @@ fn order(insts: &[(u32, Inst)]) -> Result<Vec<(u32, Micro)>, Fault> {
 
 /// Handles results of E1 for the same register: a certain conflict is a fault, a possible one is detected when the
 /// results land.
-fn defer_shared(open: &mut [Ordered]) -> Result<(), Fault> {
+fn defer_shared(open: &mut [OrderedInst]) -> Result<(), Fault> {
     for index in 0..open.len() {
         for other in index + 1..open.len() {
             let shared = open[index].writes & open[other].writes;
@@ -271,9 +275,9 @@ fn reads(inst: Inst) -> u64 {
         | bits(inst.pred().reg().into_iter())
 }
 
-fn resolve(at: u32, inst: Inst) -> Micro {
-    let Plan { work, extra, swaps, is_unsigned } = plan(inst);
-    let mut micro = Micro {
+fn resolve(at: u32, inst: Inst) -> MicroOp {
+    let WorkPlan { work, extra, swaps, is_unsigned } = plan(inst);
+    let mut micro = MicroOp {
         work,
         pred: inst.pred().reg().map_or(TRUE, |reg| reg.index() as u8),
         inverted: matches!(inst.pred(), c67x::Pred::Unless(_)),
@@ -304,7 +308,7 @@ fn resolve(at: u32, inst: Inst) -> Micro {
     micro
 }
 
-impl Micro {
+impl MicroOp {
     /// Reports whether its condition holds.
     #[inline(always)]
     pub(super) fn is_executed(&self, regs: &[u32; 256]) -> bool {

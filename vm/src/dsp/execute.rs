@@ -1,7 +1,7 @@
 //! The instructions, one arm each.
 
-use super::decode::{AFTER, DEFERRED, FORESEEN, LONG1, LONG2, Micro, NEGATIVE, STEADY, UNSIGNED, UPDATES};
-use super::flight::Late;
+use super::decode::{AFTER, DEFERRED, FORESEEN, LONG1, LONG2, MicroOp, NEGATIVE, STEADY, UNSIGNED, UPDATES};
+use super::flight::PendingDouble;
 use super::memory::Memory;
 use super::pipeline::State;
 use super::work::Work;
@@ -14,7 +14,7 @@ impl State {
     #[inline(always)]
     pub(super) fn execute<const RENAMED: bool, M: Memory>(
         &mut self,
-        m: &Micro,
+        m: &MicroOp,
         memory: &mut M,
     ) -> Result<(), TrapKind> {
         let s1 = self.regs[usize::from(m.a)].wrapping_add(m.imm);
@@ -199,12 +199,12 @@ impl State {
 
     /// A result of E1.
     #[inline(always)]
-    fn give<const RENAMED: bool>(&mut self, m: &Micro, value: u32) {
+    fn give<const RENAMED: bool>(&mut self, m: &MicroOp, value: u32) {
         self.write_or_defer::<RENAMED>(m, m.dst, value);
     }
 
     #[inline(always)]
-    fn write_or_defer<const RENAMED: bool>(&mut self, m: &Micro, reg: u8, value: u32) {
+    fn write_or_defer<const RENAMED: bool>(&mut self, m: &MicroOp, reg: u8, value: u32) {
         if RENAMED || m.flags & DEFERRED != 0 {
             self.land::<RENAMED>(1, reg, value);
         } else {
@@ -213,19 +213,19 @@ impl State {
     }
 
     /// A 40-bit result of E1.
-    fn give_long<const RENAMED: bool>(&mut self, m: &Micro, value: i64) {
+    fn give_long<const RENAMED: bool>(&mut self, m: &MicroOp, value: i64) {
         let value = alu::to_unsigned_long(value);
         self.write_or_defer::<RENAMED>(m, m.dst, value as u32);
         self.write_or_defer::<RENAMED>(m, m.dst | 1, (value >> 32) as u32);
     }
 
     /// Schedules a double whose low word is available in E1 and its high word in E2.
-    fn give_double<const RENAMED: bool>(&mut self, m: &Micro, value: u64) {
+    fn give_double<const RENAMED: bool>(&mut self, m: &MicroOp, value: u64) {
         self.give::<RENAMED>(m, value as u32);
         self.land::<RENAMED>(2, m.dst | 1, (value >> 32) as u32);
     }
 
-    fn double2(&self, m: &Micro) -> u64 {
+    fn double2(&self, m: &MicroOp) -> u64 {
         self.pair(m.b, m.b_high)
     }
 
@@ -234,7 +234,7 @@ impl State {
     }
 
     /// s1 of 40-bit arithmetic.
-    fn long1(&self, m: &Micro) -> i64 {
+    fn long1(&self, m: &MicroOp) -> i64 {
         if m.flags & LONG1 != 0 {
             return alu::to_long(self.pair(m.a, m.a_high).cast_signed());
         }
@@ -242,7 +242,7 @@ impl State {
     }
 
     /// s2 of 40-bit arithmetic.
-    fn long2(&self, m: &Micro) -> i64 {
+    fn long2(&self, m: &MicroOp) -> i64 {
         if m.flags & LONG2 != 0 {
             return alu::to_long(self.pair(m.b, m.b_high).cast_signed());
         }
@@ -251,7 +251,7 @@ impl State {
 
     /// The address of a load or store; the base changes.
     #[inline(always)]
-    fn address<const RENAMED: bool>(&mut self, m: &Micro, base_and_constant: u32, offset: u32) -> u32 {
+    fn address<const RENAMED: bool>(&mut self, m: &MicroOp, base_and_constant: u32, offset: u32) -> u32 {
         let offset = offset << m.extra;
         let sum = if m.flags & NEGATIVE == 0 {
             base_and_constant.wrapping_add(offset)
@@ -269,7 +269,13 @@ impl State {
     /// All words of a double instruction that reads the high word of s1 after `cycles` cycles and the high word of s2
     /// after one; `None` if those values are not known yet.
     #[inline(always)]
-    fn words<const RENAMED: bool>(&self, m: &Micro, cycles: u64, low1: u32, low2: u32) -> Option<(u64, u64)> {
+    fn words<const RENAMED: bool>(
+        &self,
+        m: &MicroOp,
+        cycles: u64,
+        low1: u32,
+        low2: u32,
+    ) -> Option<(u64, u64)> {
         if !RENAMED && m.flags & STEADY == 0 {
             return None;
         }
@@ -283,19 +289,19 @@ impl State {
 
     /// Returns both sources of a product, if its high words are certain before the next packet executes.
     #[inline(always)]
-    fn product_words<const RENAMED: bool>(&self, m: &Micro, low1: u32, low2: u32) -> Option<(u64, u64)> {
+    fn product_words<const RENAMED: bool>(&self, m: &MicroOp, low1: u32, low2: u32) -> Option<(u64, u64)> {
         let is_foreseen = RENAMED || m.extra & FORESEEN != 0 && !self.branches_next();
         if is_foreseen { self.words::<RENAMED>(m, 2, low1, low2) } else { None }
     }
 
     /// Starts a double instruction that reads its high words after E1; it is computed at once if those values are
     /// already known.
-    fn start_double<const RENAMED: bool>(&mut self, m: &Micro, low1: u32, low2: u32) {
+    fn start_double<const RENAMED: bool>(&mut self, m: &MicroOp, low1: u32, low2: u32) {
         let is_product = m.work == Work::Mpydp;
         let words = if is_product { None } else { self.words::<RENAMED>(m, 1, low1, low2) };
         match words {
             Some((s1, s2)) => self.finish_double::<RENAMED>(m, 0, s1, s2),
-            None => self.push_late(Late {
+            None => self.push_late(PendingDouble {
                 due: self.clock.cycle + 1,
                 issued: self.clock.cycle,
                 micro: *m,
@@ -307,11 +313,11 @@ impl State {
     }
 
     /// The next read of a double instruction.
-    pub(super) fn continue_late(&mut self, late: Late) {
+    pub(super) fn continue_late(&mut self, late: PendingDouble) {
         let high1 = self.regs[usize::from(late.micro.a_high)];
         let high2 = self.regs[usize::from(late.micro.b_high)];
         if late.micro.work == Work::Mpydp && late.high2.is_none() {
-            self.push_late(Late { due: self.clock.cycle + 1, high2: Some(high2), ..late });
+            self.push_late(PendingDouble { due: self.clock.cycle + 1, high2: Some(high2), ..late });
             return;
         }
         let s2 = join(late.low2, late.high2.unwrap_or(high2));
@@ -319,7 +325,7 @@ impl State {
     }
 
     /// Computes a double instruction with all of its words, `passed` cycles after the issue.
-    fn finish_double<const RENAMED: bool>(&mut self, m: &Micro, passed: u64, s1: u64, s2: u64) {
+    fn finish_double<const RENAMED: bool>(&mut self, m: &MicroOp, passed: u64, s1: u64, s2: u64) {
         let dst = m.dst;
         let (a, b) = (float::double(s1), float::double(s2));
         match m.work {
@@ -350,6 +356,6 @@ fn unsigned(value: i64) -> u64 {
 }
 
 /// A 32-bit source of 40-bit arithmetic.
-fn widen(m: &Micro, value: u32) -> i64 {
+fn widen(m: &MicroOp, value: u32) -> i64 {
     if m.flags & UNSIGNED != 0 { i64::from(value) } else { signed(value) }
 }

@@ -3,7 +3,7 @@
 //! Results wait in sixteen slots; the slot of a cycle is its number modulo 16. The cycles in which an effect may land
 //! are kept in a separate mask, so that cycles without one pass quickly.
 
-use super::decode::Micro;
+use super::decode::MicroOp;
 
 /// Slots; more than the longest latency.
 pub(super) const SLOTS: usize = 16;
@@ -12,13 +12,13 @@ pub(super) const ANY: u32 = (1 << SLOTS) - 2;
 
 /// A double instruction that has not read all of its sources.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Late {
+pub(super) struct PendingDouble {
     /// The cycle of its next read.
     pub(super) due: u64,
     /// The cycle of its issue.
     pub(super) issued: u64,
     /// The instruction.
-    pub(super) micro: Micro,
+    pub(super) micro: MicroOp,
     /// Low word of s1; all of a single.
     pub(super) low1: u32,
     /// Low word of s2.
@@ -29,7 +29,7 @@ pub(super) struct Late {
 
 /// The effects in flight: results, branches, double instructions that have more to read.
 #[derive(Clone, Debug)]
-pub(super) struct Flight {
+pub(super) struct InFlightEffects {
     /// The cycles in which an effect may land, relative to the present one: bit k for k cycles; bit 0 is meaningless.
     ///
     /// The effects that a packet may issue are known when it is decoded, so this changes once per packet rather than
@@ -39,10 +39,10 @@ pub(super) struct Flight {
     pub(super) values: Box<[[u32; 64]; SLOTS]>,
     pub(super) branches: u16,
     pub(super) targets: [u32; SLOTS],
-    pub(super) late: Vec<Late>,
+    pub(super) late: Vec<PendingDouble>,
 }
 
-impl Flight {
+impl InFlightEffects {
     /// Reports whether nothing is in flight.
     pub(super) const fn is_empty(&self) -> bool {
         self.due >> 1 == 0
@@ -55,7 +55,7 @@ impl Flight {
     }
 }
 
-impl Default for Flight {
+impl Default for InFlightEffects {
     fn default() -> Self {
         Self {
             due: 0,

@@ -17,7 +17,7 @@ const MOST_STORES: usize = 64;
 const PLACES: usize = 64;
 
 /// A word that was stored to: its address, and its value before.
-type Old = (u32, u32);
+type OverwrittenWord = (u32, u32);
 
 /// An iteration that is being watched.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ struct Iteration {
     picture: Picture,
     packets: u64,
     touches: u64,
-    stores: Vec<Old>,
+    stores: Vec<OverwrittenWord>,
 }
 
 /// The number of visits to an address since the last event.
@@ -39,7 +39,7 @@ struct Visits {
 
 /// The knowledge about loops since the last event.
 #[derive(Clone, Debug)]
-pub(super) struct Idle {
+pub(super) struct IdleDetector {
     visits: [Visits; PLACES],
     /// Counts events. A program that polls a firmware function calls it millions of times, and each call is an event;
     /// so earlier visits become invalid by their number instead of being cleared.
@@ -51,7 +51,7 @@ pub(super) struct Idle {
     pub(super) skipped: u64,
 }
 
-impl Default for Idle {
+impl Default for IdleDetector {
     fn default() -> Self {
         Self {
             visits: [Visits::default(); PLACES],
@@ -65,16 +65,16 @@ impl Default for Idle {
 
 /// The action at the target of a backward branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Arrival {
+pub(super) enum BranchAction {
     /// Nothing.
     Pass,
     /// The address has been visited often enough to take a picture.
-    Look,
+    TakePicture,
     /// The address of the picture is reached again.
-    Again,
+    PictureReached,
 }
 
-impl Idle {
+impl IdleDetector {
     /// Drops all observations, because of an event.
     pub(super) fn forget(&mut self) {
         self.happened = self.happened.wrapping_add(1);
@@ -87,23 +87,23 @@ impl Idle {
 
     /// Called when a branch has gone back to `pc` in this cycle.
     #[inline(always)]
-    pub(super) fn arrive(&mut self, pc: u32, cycle: u64) -> Arrival {
+    pub(super) fn arrive(&mut self, pc: u32, cycle: u64) -> BranchAction {
         if let Some(iteration) = &self.iteration {
             if iteration.picture.pc == pc {
-                return Arrival::Again;
+                return BranchAction::PictureReached;
             }
             if cycle - iteration.picture.cycle > LONGEST {
                 self.iteration = None;
                 self.is_watching = false;
             }
-            return Arrival::Pass;
+            return BranchAction::Pass;
         }
         let place = &mut self.visits[pc as usize / 4 % PLACES];
         if (place.pc, place.since) != (pc, self.happened) {
             *place = Visits { pc, count: 0, since: self.happened };
         }
         place.count = place.count.saturating_add(1);
-        if place.count == ENOUGH { Arrival::Look } else { Arrival::Pass }
+        if place.count == ENOUGH { BranchAction::TakePicture } else { BranchAction::Pass }
     }
 
     /// Starts to observe the iteration that begins here.

@@ -11,14 +11,14 @@ mod renaming;
 
 use std::collections::BTreeMap;
 
-use self::plan::{Arrival, Planned, plan};
-use self::renaming::{Flying, list};
+use self::plan::{Arrival, LoopPlan, plan};
+use self::renaming::{EffectShape, list};
 use super::cache::Cache;
 use super::core::StackWatch;
 use super::decode::instructions;
 use super::memory::Memory;
 use super::pipeline::State;
-use super::watched::Watched;
+use super::watched::WatchedMemory;
 use crate::trap::TrapKind;
 
 /// Arrivals after which a loop is planned.
@@ -48,15 +48,15 @@ pub(super) struct Loops {
     /// The generation of the code that the loops were planned from.
     generation: u64,
     changes: u32,
-    flying: Vec<Flying>,
+    flying: Vec<EffectShape>,
     is_off: bool,
 }
 
 /// A loop with its entry and the effects in flight at the entry.
 #[derive(Debug)]
 pub(super) struct RenamedLoop {
-    flying: Vec<Flying>,
-    planned: Planned,
+    flying: Vec<EffectShape>,
+    planned: LoopPlan,
     entries: u64,
     /// Packets executed.
     packets: u64,
@@ -158,7 +158,12 @@ impl Loops {
 
 /// Plans the loop where a branch has arrived.
 #[cold]
-fn plan_with<M: Memory>(state: &State, flying: &[Flying], cache: &mut Cache, memory: &M) -> Option<Planned> {
+fn plan_with<M: Memory>(
+    state: &State,
+    flying: &[EffectShape],
+    cache: &mut Cache,
+    memory: &M,
+) -> Option<LoopPlan> {
     let generation = cache.generation();
     let planned = plan(state.pc(), state.branched_at()[0], flying, &mut |at| {
         if at & 3 != 0 {
@@ -183,11 +188,11 @@ impl RenamedLoop {
     pub(super) fn run<M: Memory>(
         &mut self,
         state: &mut State,
-        memory: &mut Watched<'_, M>,
+        memory: &mut WatchedMemory<'_, M>,
         mut stack: Option<&mut StackWatch>,
         packets: &mut u64,
     ) -> Result<(), (TrapKind, Option<usize>)> {
-        let Planned { packets: planned, borders } = &self.planned;
+        let LoopPlan { packets: planned, borders } = &self.planned;
         borders[0].before.enter(state);
         let began = *packets;
         let mut at = 0;

@@ -14,8 +14,8 @@ mod region;
 
 use std::collections::BTreeMap;
 
-use self::flying::Flying;
-use self::region::{Find, LONGEST, NoRegion, Region};
+use self::flying::InFlightEffect;
+use self::region::{LONGEST, NoRegion, PacketFinder, Region};
 use super::cache::Cache;
 use super::memory::Memory;
 use super::pipeline::State;
@@ -37,7 +37,7 @@ const MOST_CHANGES: u32 = 64;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RegionTranslator(Translate);
 
-type Translate = fn(u32, Vec<Flying>, &mut Find<'_>) -> Result<Region, NoRegion>;
+type Translate = fn(u32, Vec<InFlightEffect>, &mut PacketFinder<'_>) -> Result<Region, NoRegion>;
 
 /// The translator to code of this computer.
 pub(super) const TRANSLATOR: RegionTranslator = RegionTranslator(region::translate);
@@ -54,7 +54,7 @@ pub(super) struct Native {
     generation: u64,
     changes: u32,
     handover: Box<Handover>,
-    flying: Vec<Flying>,
+    flying: Vec<InFlightEffect>,
     /// Packets that regions have executed.
     packets: u64,
 }
@@ -164,7 +164,7 @@ impl Native {
             return None;
         }
         cache.mark_lines();
-        let find: &mut Find<'_> = &mut |at| {
+        let find: &mut PacketFinder<'_> = &mut |at| {
             let index = cache.find(at, memory).ok()?;
             let (packet, micros) = cache.packet(index);
             Some((packet, micros.to_vec()))

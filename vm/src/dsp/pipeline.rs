@@ -7,7 +7,7 @@
 use c67x::Reg;
 
 use super::decode::TRUE;
-use super::flight::{ANY, Flight, Late, SLOTS};
+use super::flight::{ANY, InFlightEffects, PendingDouble, SLOTS};
 use super::memory::Clock;
 use crate::trap::Fault;
 
@@ -39,8 +39,8 @@ pub struct State {
     pub(super) pc: u32,
     /// Cycles passed and left.
     pub clock: Clock,
-    pub(super) flight: Flight,
-    undefined: Undefined,
+    pub(super) flight: InFlightEffects,
+    undefined: UndefinedEffects,
     /// The packets of the last branch and of the one before it.
     pub(super) branched_at: [u32; 2],
     /// The first cycle before which an interrupt is possible again.
@@ -51,7 +51,7 @@ pub struct State {
 
 /// Effects of a packet whose outcome the processor leaves undefined.
 #[derive(Clone, Debug, Default)]
-struct Undefined {
+struct UndefinedEffects {
     /// Registers with two results in one cycle; not 0 either if two branches arrive in one.
     conflicts: u64,
     two_branches: Option<(u32, u32)>,
@@ -104,8 +104,8 @@ impl Default for State {
             control,
             pc: 0,
             clock: Clock::default(),
-            flight: Flight::default(),
-            undefined: Undefined::default(),
+            flight: InFlightEffects::default(),
+            undefined: UndefinedEffects::default(),
             branched_at: [0; 2],
             shadow: 0,
             is_idle: false,
@@ -314,7 +314,7 @@ impl State {
     }
 
     /// Remembers a double instruction whose high words are read later.
-    pub(super) fn push_late(&mut self, late: Late) {
+    pub(super) fn push_late(&mut self, late: PendingDouble) {
         self.flight.late.push(late);
     }
 
@@ -385,38 +385,38 @@ impl State {
 
     /// Lets up to `cycles` cycles pass; they end where a branch arrives.
     #[inline(always)]
-    pub(super) fn advance(&mut self, cycles: u8) -> Passed {
+    pub(super) fn advance(&mut self, cycles: u8) -> CyclesEnd {
         if cycles == 1 { self.pass() } else { self.advance_far(u32::from(cycles)) }
     }
 
     /// Lets several cycles pass.
-    fn advance_far(&mut self, mut cycles: u32) -> Passed {
+    fn advance_far(&mut self, mut cycles: u32) -> CyclesEnd {
         loop {
             let next = (self.flight.due >> 1).trailing_zeros() + 1;
             let passed = next.min(cycles);
             self.clock.cycle += u64::from(passed);
             self.flight.due >>= passed;
-            if next == passed && self.arrive() == Passed::Branched {
-                return Passed::Branched;
+            if next == passed && self.arrive() == CyclesEnd::Branched {
+                return CyclesEnd::Branched;
             }
             cycles -= passed;
             if cycles == 0 {
-                return Passed::Through;
+                return CyclesEnd::Through;
             }
         }
     }
 
     /// Lets a cycle pass.
     #[inline(always)]
-    fn pass(&mut self) -> Passed {
+    fn pass(&mut self) -> CyclesEnd {
         self.clock.cycle += 1;
         self.flight.due >>= 1;
-        if self.flight.due & 1 == 0 { Passed::Through } else { self.arrive() }
+        if self.flight.due & 1 == 0 { CyclesEnd::Through } else { self.arrive() }
     }
 
     /// Applies the effects that are due in this cycle.
     #[inline(always)]
-    fn arrive(&mut self) -> Passed {
+    fn arrive(&mut self) -> CyclesEnd {
         let slot = self.slot(0);
         let mut mask = std::mem::take(&mut self.flight.masks[slot]);
         let values = &self.flight.values[slot];
@@ -429,11 +429,11 @@ impl State {
             self.read_late();
         }
         if self.flight.branches >> slot & 1 == 0 {
-            return Passed::Through;
+            return CyclesEnd::Through;
         }
         self.flight.branches &= !(1 << slot);
         self.pc = self.flight.targets[slot];
-        Passed::Branched
+        CyclesEnd::Branched
     }
 
     #[cold]
@@ -467,7 +467,7 @@ impl State {
 
 /// The end of a packet's cycles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Passed {
+pub(super) enum CyclesEnd {
     /// The next packet follows.
     Through,
     /// A branch has arrived.

@@ -16,7 +16,7 @@ use super::core::{Core, Halt, HotCode};
 use super::inspect::packet_text;
 use super::view::View;
 use crate::call::ArgumentList;
-use crate::engine::{ContextId, Executor, ForeignSnapshot, Observed, Preemption, Slice, Stack, Stop};
+use crate::engine::{ContextId, Executor, ForeignSnapshot, ObservedAccesses, Preemption, Slice, Stack, Stop};
 use crate::firmware::{ExecutedPacket, Firmware, Outcome, Value};
 use crate::loaded::Image;
 use crate::memory::GuestMemory;
@@ -91,7 +91,7 @@ impl Executor for DspEngine {
     fn set_preemption(&mut self, _: Preemption) {}
 
     /// Accesses of code for the processor are not reported.
-    fn observe(&mut self, _: Observed) {}
+    fn observe(&mut self, _: ObservedAccesses) {}
 
     fn start<F: Firmware + ?Sized>(
         &mut self,

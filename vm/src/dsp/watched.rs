@@ -1,22 +1,22 @@
 //! Memory, with an eye on stores among decoded packets.
 
 use super::cache::Cache;
-use super::idle::Idle;
+use super::idle::IdleDetector;
 use super::memory::{Clock, Memory};
 use crate::trap::TrapKind;
 
 /// Memory, with an eye on stores among decoded packets.
-pub(super) struct Watched<'a, M> {
+pub(super) struct WatchedMemory<'a, M> {
     pub(super) inner: &'a mut M,
     cache: &'a Cache,
-    idle: &'a mut Idle,
+    idle: &'a mut IdleDetector,
     /// Addresses of decoded words that the packet has changed: a packet has at most two stores.
     pub(super) hits: [Option<u32>; 2],
 }
 
-impl<'a, M: Memory> Watched<'a, M> {
+impl<'a, M: Memory> WatchedMemory<'a, M> {
     #[inline(always)]
-    pub(super) const fn new(inner: &'a mut M, cache: &'a Cache, idle: &'a mut Idle) -> Self {
+    pub(super) const fn new(inner: &'a mut M, cache: &'a Cache, idle: &'a mut IdleDetector) -> Self {
         Self { inner, cache, idle, hits: [None; 2] }
     }
 
@@ -31,7 +31,7 @@ impl<'a, M: Memory> Watched<'a, M> {
     }
 }
 
-impl<M: Memory> Memory for Watched<'_, M> {
+impl<M: Memory> Memory for WatchedMemory<'_, M> {
     fn fetch(&self, addr: u32) -> Option<u32> {
         self.inner.fetch(addr)
     }

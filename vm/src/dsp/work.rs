@@ -213,7 +213,7 @@ works! {
 
 /// The work of an instruction, and how its sources should be taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Plan {
+pub(super) struct WorkPlan {
     /// The operation.
     pub(super) work: Work,
     /// Shift of a scaled source, halves of a product.
@@ -224,28 +224,28 @@ pub(super) struct Plan {
     pub(super) is_unsigned: bool,
 }
 
-const fn plain(work: Work) -> Plan {
-    Plan { work, extra: 0, swaps: false, is_unsigned: false }
+const fn plain(work: Work) -> WorkPlan {
+    WorkPlan { work, extra: 0, swaps: false, is_unsigned: false }
 }
 
-const fn unsigned(work: Work) -> Plan {
-    Plan { is_unsigned: true, ..plain(work) }
+const fn unsigned(work: Work) -> WorkPlan {
+    WorkPlan { is_unsigned: true, ..plain(work) }
 }
 
-const fn scaled(work: Work, shift: u8) -> Plan {
-    Plan { extra: shift, ..plain(work) }
+const fn scaled(work: Work, shift: u8) -> WorkPlan {
+    WorkPlan { extra: shift, ..plain(work) }
 }
 
-const fn product(first: Half, second: Half) -> Plan {
-    Plan { extra: Halves::new(first, second).bits(), ..plain(Work::Product) }
+const fn product(first: Half, second: Half) -> WorkPlan {
+    WorkPlan { extra: Halves::new(first, second).bits(), ..plain(Work::Product) }
 }
 
-const fn saturating(first: Half, second: Half) -> Plan {
-    Plan { extra: Halves::saturating(first, second).bits(), ..plain(Work::Product) }
+const fn saturating(first: Half, second: Half) -> WorkPlan {
+    WorkPlan { extra: Halves::saturating(first, second).bits(), ..plain(Work::Product) }
 }
 
 /// The work of an instruction.
-pub(super) fn plan(inst: Inst) -> Plan {
+pub(super) fn plan(inst: Inst) -> WorkPlan {
     use Half::{High, Low, SignedHigh, SignedLow};
     let has_long = inst.op().row().operands.iter().any(|(_, kind)| *kind == Kind::L);
     let long = |short: Work, long: Work| plain(if has_long { long } else { short });
@@ -315,7 +315,7 @@ pub(super) fn plan(inst: Inst) -> Plan {
         Mnemonic::Mpyi => plain(Work::Mpyi),
         Mnemonic::Mpyid => plain(Work::Mpyid),
         Mnemonic::Addsp => plain(Work::Addsp),
-        Mnemonic::Subsp => Plan { swaps: inst.op() == Op::SubspSRXrRRev, ..plain(Work::Subsp) },
+        Mnemonic::Subsp => WorkPlan { swaps: inst.op() == Op::SubspSRXrRRev, ..plain(Work::Subsp) },
         Mnemonic::Mpysp => plain(Work::Mpysp),
         Mnemonic::Intsp => plain(Work::Intsp),
         Mnemonic::Intspu => plain(Work::Intspu),
@@ -337,7 +337,7 @@ pub(super) fn plan(inst: Inst) -> Plan {
         Mnemonic::Rcpdp => plain(Work::Rcpdp),
         Mnemonic::Rsqrdp => plain(Work::Rsqrdp),
         Mnemonic::Adddp => plain(Work::Adddp),
-        Mnemonic::Subdp => Plan { swaps: inst.op() == Op::SubdpSDXdDRev, ..plain(Work::Subdp) },
+        Mnemonic::Subdp => WorkPlan { swaps: inst.op() == Op::SubdpSDXdDRev, ..plain(Work::Subdp) },
         Mnemonic::Cmpeqdp => plain(Work::Cmpeqdp),
         Mnemonic::Cmpgtdp => plain(Work::Cmpgtdp),
         Mnemonic::Cmpltdp => plain(Work::Cmpltdp),

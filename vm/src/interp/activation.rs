@@ -1,7 +1,7 @@
 //! An activation: one call of a function while it executes, on which instructions work.
 //!
 //! There is one method an instruction, in `arith.rs`, `memory.rs` and `control.rs`. Its result is the continuation
-//! ([`Finish`]).
+//! ([`IntoFlow`]).
 
 use std::cell::Cell;
 
@@ -62,35 +62,35 @@ pub(super) enum Flow {
 }
 
 /// A result of an instruction's method, which can be a flow.
-pub(super) trait Finish {
+pub(super) trait IntoFlow {
     /// Converts it to a flow.
-    fn flow(self) -> Flow;
+    fn into_flow(self) -> Flow;
 }
 
-impl Finish for () {
+impl IntoFlow for () {
     #[inline(always)]
-    fn flow(self) -> Flow {
+    fn into_flow(self) -> Flow {
         Flow::Next
     }
 }
 
-impl Finish for Flow {
+impl IntoFlow for Flow {
     #[inline(always)]
-    fn flow(self) -> Flow {
+    fn into_flow(self) -> Flow {
         self
     }
 }
 
-impl Finish for Exit {
+impl IntoFlow for Exit {
     #[inline(always)]
-    fn flow(self) -> Flow {
+    fn into_flow(self) -> Flow {
         Flow::Leave(self)
     }
 }
 
-impl Finish for Result<(), TrapKind> {
+impl IntoFlow for Result<(), TrapKind> {
     #[inline(always)]
-    fn flow(self) -> Flow {
+    fn into_flow(self) -> Flow {
         match self {
             Ok(()) => Flow::Next,
             Err(kind) => Flow::Leave(Exit::Trap(kind)),

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
-use super::context::Head;
+use super::context::FunctionHead;
 use super::dispatch::{
     ENDS_ITERATION, ENDS_ITERATION_IF, ENDS_ITERATION_UNLESS, Handler, OBSERVED, OBSERVED_AT,
     OBSERVED_WITH_CALL_BACK, SHARED, handler_of,
@@ -16,7 +16,7 @@ use super::dispatch::{
 use super::observe::{self, AccessPlace};
 use super::parts::{A, B, DST, Parts, is_commutative, parts_of};
 use super::sequences::{AHEAD, BREAK, Text};
-use crate::engine::Observed;
+use crate::engine::ObservedAccesses;
 use crate::kind::OpKind;
 use crate::meter::branch_target;
 use crate::op::{Op, WORD};
@@ -84,9 +84,9 @@ impl Word {
 
     /// The head of a function, which [`encode`] stores in the function's word.
     #[inline(always)]
-    pub(super) const fn head(&self) -> Head {
+    pub(super) const fn head(&self) -> FunctionHead {
         let [_, parameters, registers, frame] = self.parts;
-        Head { parameters, registers, frame }
+        FunctionHead { parameters, registers, frame }
     }
 
     /// The index of the register that is the operand at `place`.
@@ -104,18 +104,19 @@ impl Word {
 
 /// The words of one program.
 #[derive(Clone)]
-pub(super) struct Encoded {
+pub(super) struct EncodedProgram {
     words: Box<Words>,
     /// The accesses to shared memory that are reported.
-    observed: Observed,
+    observed: ObservedAccesses,
     /// The waiting loops; none if all accesses are reported.
     loops: Arc<[PollingLoop]>,
 }
 
-impl Encoded {
+impl EncodedProgram {
     /// Encodes `program`, with accesses to shared memory reported or not, for a firmware with these `readers`.
-    pub(super) fn new(program: &Program, observed: Observed, readers: Readers<'_>) -> Self {
-        let loops = if observed == Observed::All { Vec::new() } else { polling_loops(program, readers) };
+    pub(super) fn new(program: &Program, observed: ObservedAccesses, readers: Readers<'_>) -> Self {
+        let loops =
+            if observed == ObservedAccesses::All { Vec::new() } else { polling_loops(program, readers) };
         Self::with(program, observed, loops.into(), &|_, _| false)
     }
 
@@ -126,17 +127,17 @@ impl Encoded {
 
     fn with(
         program: &Program,
-        observed: Observed,
+        observed: ObservedAccesses,
         loops: Arc<[PollingLoop]>,
         is_held: &dyn Fn(usize, &Op) -> bool,
     ) -> Self {
         let is_observed = |pc: usize, op: &Op| {
-            observed != Observed::None && !is_held(pc, op) && observe::place_of(op).is_some()
+            observed != ObservedAccesses::None && !is_held(pc, op) && observe::place_of(op).is_some()
         };
         let branches: BTreeSet<usize> = loops.iter().flat_map(|polling| polling.branches.clone()).collect();
         let is_alone = |pc: usize, op: &Op| is_held(pc, op) || is_observed(pc, op) || branches.contains(&pc);
         let mut words = encode(program, &is_alone);
-        let has_call_back = observed != Observed::None && program.has_call_back();
+        let has_call_back = observed != ObservedAccesses::None && program.has_call_back();
         for (pc, op) in program.ops().iter().enumerate().filter(|(pc, op)| is_observed(*pc, op)) {
             words[pc] = Word::observed(op, has_call_back);
         }
@@ -160,7 +161,7 @@ impl Encoded {
     }
 }
 
-impl fmt::Debug for Encoded {
+impl fmt::Debug for EncodedProgram {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Encoded")
     }
@@ -172,7 +173,7 @@ pub(super) struct Code {
     /// The program.
     pub(super) program: Arc<Program>,
     /// Its words.
-    pub(super) words: Arc<Encoded>,
+    pub(super) words: Arc<EncodedProgram>,
 }
 
 /// The words of a program; words at which contexts are held get a handler that stops a context.
@@ -197,7 +198,7 @@ fn encode(program: &Program, is_held: &dyn Fn(usize, &Op) -> bool) -> Box<Words>
             parts[0] = BREAK;
         }
         if let Op::Func { .. } = ops[pc] {
-            let Head { parameters, registers, frame } = Head::of(program, FuncRef(pc as u32));
+            let FunctionHead { parameters, registers, frame } = FunctionHead::of(program, FuncRef(pc as u32));
             parts = [parts[0], parameters, registers, frame];
         }
         Word::new(text.code_at(pc), parts)

@@ -5,7 +5,7 @@ use std::cell::Cell;
 use kmotiondef::{CodeAddr, GuestAddr};
 
 use super::jumps::{JumpPoint, Jumps};
-use super::split::Split;
+use super::split::SegmentRest;
 use crate::engine::{FrameView, Stack};
 use crate::filter::AccessFilter;
 use crate::operand::FuncRef;
@@ -64,7 +64,7 @@ pub(super) struct Calls {
 
 /// The facts about a function that a call of it needs.
 #[derive(Clone, Copy)]
-pub(super) struct Head {
+pub(super) struct FunctionHead {
     /// Number of registers that are parameters.
     pub(super) parameters: u16,
     /// Number of registers.
@@ -73,7 +73,7 @@ pub(super) struct Head {
     pub(super) frame: u16,
 }
 
-impl Head {
+impl FunctionHead {
     /// The head of `function`.
     pub(super) fn of(program: &Program, function: FuncRef) -> Self {
         let (signature, registers, frame) = program.head_of(function);
@@ -82,7 +82,7 @@ impl Head {
 }
 
 /// The registers and the frame of a call.
-struct Room<'a> {
+struct CallStorage<'a> {
     /// The first register.
     base: usize,
     window: &'a Window,
@@ -97,7 +97,7 @@ impl Calls {
     pub(super) fn call<'a>(
         &mut self,
         function: FuncRef,
-        head: Head,
+        head: FunctionHead,
         pc: usize,
         registers: &'a [Cell<u64>],
     ) -> Option<&'a Window> {
@@ -112,20 +112,20 @@ impl Calls {
     /// The room for a call, whose registers begin after those of the current call; `None` if the stack or the registers
     /// are not sufficient.
     #[inline(always)]
-    fn room<'a>(&self, head: Head, registers: &'a [Cell<u64>]) -> Option<Room<'a>> {
+    fn room<'a>(&self, head: FunctionHead, registers: &'a [Cell<u64>]) -> Option<CallStorage<'a>> {
         let base = self.current.base + usize::from(self.current.registers);
         let bytes = bytes_of(head.frame);
         if bytes > self.current.stack_pointer - self.stack.limit {
             return None;
         }
         let window = registers.get(base..)?.first_chunk()?;
-        Some(Room { base, window, stack_pointer: self.current.stack_pointer - bytes })
+        Some(CallStorage { base, window, stack_pointer: self.current.stack_pointer - bytes })
     }
 
     /// Begins a call of `function`; all its registers but the parameters are 0.
     #[inline(always)]
-    fn begin<'a>(&mut self, function: FuncRef, head: Head, room: Room<'a>) -> &'a Window {
-        let Room { base, window, stack_pointer } = room;
+    fn begin<'a>(&mut self, function: FuncRef, head: FunctionHead, room: CallStorage<'a>) -> &'a Window {
+        let CallStorage { base, window, stack_pointer } = room;
         let (parameters, count) = (usize::from(head.parameters), usize::from(head.registers));
         clear(&window[parameters..], count - parameters);
         self.lowest = self.lowest.min(stack_pointer);
@@ -176,28 +176,28 @@ pub(super) struct Context {
     /// The entry function, until it has been entered.
     pub(super) pending: Option<FuncRef>,
     /// The segment that is executed in steps, if the slice ends or has ended in one.
-    pub(super) split: Option<Split>,
+    pub(super) split: Option<SegmentRest>,
     /// The accesses of the slice that are not reported again; `None` if all accesses are reported, or none.
     pub(super) filter: Option<Box<AccessFilter>>,
 }
 
 /// A context as it was at an instant.
 #[derive(Debug)]
-pub(super) struct Saved {
+pub(super) struct SavedContext {
     /// The registers of the calls in progress, and the arguments after them; the words after them are written before
     /// they are read.
     registers: Vec<u64>,
     calls: Calls,
     pending: Option<FuncRef>,
-    split: Option<Split>,
+    split: Option<SegmentRest>,
     filter: Option<Box<AccessFilter>>,
 }
 
 impl Context {
     /// Returns a copy of the context.
-    pub(super) fn save(&self) -> Saved {
+    pub(super) fn save(&self) -> SavedContext {
         let live = self.calls.current.base + usize::from(self.calls.current.registers) + MAX_PARAMETERS;
-        Saved {
+        SavedContext {
             registers: self.registers[..live.min(self.registers.len())].to_vec(),
             calls: self.calls.clone(),
             pending: self.pending,
@@ -207,8 +207,8 @@ impl Context {
     }
 
     /// Restores the context from a copy.
-    pub(super) fn put_back(&mut self, saved: &Saved) {
-        let Saved { registers, calls, pending, split, filter } = saved;
+    pub(super) fn put_back(&mut self, saved: &SavedContext) {
+        let SavedContext { registers, calls, pending, split, filter } = saved;
         if self.registers.len() < registers.len() + WINDOW {
             self.registers.resize(registers.len() + WINDOW, 0);
         }
@@ -259,7 +259,7 @@ impl Context {
         self.registers[..MAX_PARAMETERS].fill(0);
         self.make_room(program, function)?;
         let (calls, registers) = self.parts();
-        let head = Head::of(program, function);
+        let head = FunctionHead::of(program, function);
         let room = calls.room(head, registers).expect("there is room");
         calls.begin(function, head, room);
         Ok(())
@@ -270,7 +270,7 @@ impl Context {
         self.make_room(program, function)?;
         let (calls, registers) = self.parts();
         let pc = calls.pc;
-        calls.call(function, Head::of(program, function), pc, registers).expect("there is room");
+        calls.call(function, FunctionHead::of(program, function), pc, registers).expect("there is room");
         Ok(())
     }
 

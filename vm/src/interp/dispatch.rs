@@ -21,7 +21,7 @@
 use super::activation::{Activation, Exit, Flow, State};
 use super::code::Words;
 use super::context::Window;
-use super::parts::{Assigned, COND};
+use super::parts::{AssignedRegisters, COND};
 use super::sequences::{BREAK, for_each_sequence};
 use crate::for_each_op;
 use crate::memory::Sdram;
@@ -50,7 +50,7 @@ macro_rules! run {
     }};
     ($activation:ident, $assigned:expr, $first:ident $(($($link:ident),+))? $($then:ident $(($($links:ident),+))?)+) => {{
         let Some((word, next)) = $activation.code.split_first() else { return lost($activation) };
-        let assigned: Assigned = $assigned;
+        let assigned: AssignedRegisters = $assigned;
         match step!($first $($($link)+)?)(&mut $activation, word, assigned) {
             Flow::Next => {
                 $activation.code = next;
@@ -88,20 +88,20 @@ macro_rules! define_steps {
         /// The instructions with their operands taken from the word.
         mod step {
             use crate::operand::*;
-            use crate::interp::activation::{Activation, Finish, Flow};
+            use crate::interp::activation::{Activation, IntoFlow, Flow};
             use crate::interp::code::Word;
-            use crate::interp::parts::{Assigned, Operands};
+            use crate::interp::parts::{AssignedRegisters, Operands};
 
             $(
                 #[inline(always)]
                 pub(super) fn $name<const LINK: usize, const FAR: usize>(
                     activation: &mut Activation<'_, '_>,
                     word: &Word,
-                    assigned: Assigned,
+                    assigned: AssignedRegisters,
                 ) -> Flow {
                     let mut _operands = Operands::of(&word.parts, [LINK, FAR], assigned);
                     $(let $field: $operand = _operands.take();)*
-                    activation.$name($($field),*).flow()
+                    activation.$name($($field),*).into_flow()
                 }
             )*
         }
@@ -114,7 +114,7 @@ macro_rules! define_handlers {
     ($($name:ident: $first:ident $([$recalled:ident = $last:ident])? $($step:ident $(($($link:ident),+))?)*;)*) => {
         mod handler {
             use super::super::sequences::place_in;
-            use super::{Activation, Assigned, Flow, Sdram, Slot, State, Window, Words, go_on, go_to, leave, lost, step};
+            use super::{Activation, AssignedRegisters, Flow, Sdram, Slot, State, Window, Words, go_on, go_to, leave, lost, step};
 
             $(
                 pub(super) fn $name<'m>(

@@ -9,10 +9,10 @@ use std::sync::Arc;
 
 use kmotiondef::{CodeAddr, GuestAddr};
 
-use super::code::{Code, Encoded, Words};
+use super::code::{Code, EncodedProgram, Words};
 use super::context::Context;
 use super::observe::{self, AccessPart, AccessPlace};
-use super::steps::{SingleText, Stepping};
+use super::steps::{SingleText, StepState};
 use crate::engine::{AccessRange, ContextId, Hold, HoldReason, Slice, Stop};
 use crate::firmware::Firmware;
 use crate::kind::OpKind;
@@ -46,7 +46,7 @@ pub(super) struct Holds {
     /// Contexts whose current instruction is executed without being held first.
     pub(super) passes: [bool; ContextId::COUNT],
     pub(super) hold: Option<Hold>,
-    patched: Vec<(Arc<Program>, Arc<Encoded>)>,
+    patched: Vec<(Arc<Program>, Arc<EncodedProgram>)>,
     single: SingleText,
 }
 
@@ -99,7 +99,11 @@ impl Holds {
     }
 
     /// The words of a program, with the holds inserted; `plain` are the words without them.
-    pub(super) fn words(&mut self, program: &Arc<Program>, plain: Arc<Encoded>) -> Arc<Encoded> {
+    pub(super) fn words(
+        &mut self,
+        program: &Arc<Program>,
+        plain: Arc<EncodedProgram>,
+    ) -> Arc<EncodedProgram> {
         if self.breakpoints.is_empty() && !self.looks_at_memory() {
             return plain;
         }
@@ -147,7 +151,7 @@ impl Holds {
         code: &Code,
         context: &mut Context,
         slice: &mut Slice<'_, F>,
-        steps: &mut Stepping,
+        steps: &mut StepState,
     ) -> Result<Stop, TrapKind> {
         let me = id.index();
         if let Some(index) = self.take_change(slice.memory) {
@@ -199,7 +203,7 @@ impl Holds {
         code: &Code,
         context: &mut Context,
         slice: &mut Slice<'_, F>,
-        steps: &mut Stepping,
+        steps: &mut StepState,
     ) -> Result<Stop, TrapKind> {
         let program = &code.program;
         let pc = context.calls.pc;

@@ -9,9 +9,9 @@ use std::sync::Arc;
 use kmotiondef::{CodeAddr, GuestAddr};
 
 use super::context::Context;
-use crate::engine::{ContextId, Observed, Slice};
+use crate::engine::{ContextId, ObservedAccesses, Slice};
 use crate::filter::{AccessFilter, PageOwners};
-use crate::firmware::{Firmware, NextAccess, Repeats, SharedAccess, SwitchPoint};
+use crate::firmware::{Firmware, NextAccess, RepeatPolicy, SharedAccess, SwitchPoint};
 use crate::kind::{Name, OpKind};
 use crate::op::Op;
 use crate::operand::{Addr, Count, Off, RegI32};
@@ -150,7 +150,7 @@ pub(super) struct Pending {
 
 /// An access that a context has made.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Made {
+pub(crate) struct CompletedAccess {
     /// The instruction.
     pub(crate) word: usize,
     pub(crate) part: AccessPart,
@@ -160,11 +160,11 @@ pub(crate) struct Made {
 
 impl Observer {
     /// The observer of accesses, if any is reported.
-    pub(crate) fn new(observed: Observed) -> Option<Self> {
+    pub(crate) fn new(observed: ObservedAccesses) -> Option<Self> {
         match observed {
-            Observed::None => None,
-            Observed::Fresh => Some(Self::default()),
-            Observed::All => Some(Self { reports_all: true, ..Self::default() }),
+            ObservedAccesses::None => None,
+            ObservedAccesses::Fresh => Some(Self::default()),
+            ObservedAccesses::All => Some(Self { reports_all: true, ..Self::default() }),
         }
     }
 
@@ -230,7 +230,7 @@ impl Observer {
         &mut self,
         id: ContextId,
         program: &Program,
-        Made { word, part, value }: Made,
+        CompletedAccess { word, part, value }: CompletedAccess,
         filter: Option<&AccessFilter>,
         slice: &mut Slice<'_, F>,
     ) {
@@ -247,7 +247,7 @@ impl Observer {
         let Some(filter) = filter else { return };
         if slice.firmware.take_ordering() {
             filter.forget();
-        } else if repeats == Repeats::Redundant && size <= 8 {
+        } else if repeats == RepeatPolicy::Redundant && size <= 8 {
             filter.note(word, address.get());
         }
     }
@@ -285,7 +285,13 @@ impl Pending {
             registers(op).assigned.map_or(0, |register| context.get(register))
         };
         for part in parts.iter().flatten().copied() {
-            observer.report(id, program, Made { word: *word, part, value }, context.filter.as_deref(), slice);
+            observer.report(
+                id,
+                program,
+                CompletedAccess { word: *word, part, value },
+                context.filter.as_deref(),
+                slice,
+            );
         }
     }
 }

@@ -22,21 +22,21 @@ pub(super) const B: usize = 3;
 pub(super) struct Operands<'a> {
     parts: &'a Parts,
     at: usize,
-    links: Links,
-    assigned: Assigned,
+    links: OperandLinks,
+    assigned: AssignedRegisters,
 }
 
 /// The positions of two operands: the one assigned by the previous instruction, and the one assigned by the instruction
 /// before it; 0 for none.
-pub(super) type Links = [usize; 2];
+pub(super) type OperandLinks = [usize; 2];
 
 /// The registers assigned by the previous instruction and by the one before it.
-pub(super) type Assigned = [u16; 2];
+pub(super) type AssignedRegisters = [u16; 2];
 
 impl<'a> Operands<'a> {
     /// The operands of a word; those at `links` are the registers `assigned`.
     #[inline(always)]
-    pub(super) const fn of(parts: &'a Parts, links: Links, assigned: Assigned) -> Self {
+    pub(super) const fn of(parts: &'a Parts, links: OperandLinks, assigned: AssignedRegisters) -> Self {
         Self { parts, at: DST, links, assigned }
     }
 

@@ -13,7 +13,7 @@
 
 use std::ops::Range;
 
-use super::parts::{DST, Links, Parts};
+use super::parts::{DST, OperandLinks, Parts};
 use crate::for_each_op;
 use crate::kind::{Name, OpKind};
 use crate::op::{OPCODES, Op};
@@ -193,7 +193,7 @@ pub(super) struct LinkedOp {
     /// Its opcode.
     pub(super) code: u16,
     /// The operands that the previous instructions assign.
-    pub(super) links: Links,
+    pub(super) links: OperandLinks,
 }
 
 /// A row of the list: instructions one after another.

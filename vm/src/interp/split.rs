@@ -10,7 +10,7 @@ use crate::program::Program;
 
 /// The rest of a segment that the budget did not cover.
 #[derive(Clone, Debug)]
-pub(super) struct Split {
+pub(super) struct SegmentRest {
     /// The instructions, and the cycles of each.
     pub(super) steps: Arc<[(usize, u32)]>,
     /// The index of the next step.
@@ -19,7 +19,7 @@ pub(super) struct Split {
     pub(super) high_word: Option<HighWord>,
 }
 
-impl Split {
+impl SegmentRest {
     /// The steps of the segment whose charge has just overdrawn the budget; `None` if there are none. The charge is
     /// refunded, except for the cycles before the first step.
     pub(super) fn begin(program: &Program, charge: usize, budget: &mut Cycles) -> Option<Self> {

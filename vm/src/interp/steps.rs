@@ -10,8 +10,8 @@ use kmotiondef::{Cycles, GuestAddr};
 use super::code::{Word, Words};
 use super::context::Context;
 use super::observe::{self, Observer};
-use super::split::Split;
-use crate::engine::{Observed, Preemption, Slice};
+use super::split::SegmentRest;
+use crate::engine::{ObservedAccesses, Preemption, Slice};
 use crate::firmware::Firmware;
 use crate::kind::{Name, OpKind, Width};
 use crate::op::Op;
@@ -80,7 +80,7 @@ impl SingleText {
 
 /// The preemption mode, and the state for executing instructions one at a time.
 #[derive(Debug, Default)]
-pub(super) struct Stepping {
+pub(super) struct StepState {
     pub(super) preemption: Preemption,
     pub(super) single: SingleText,
     /// The loops of the present program that may only wait, and the text for an iteration of one.
@@ -90,13 +90,13 @@ pub(super) struct Stepping {
     pub(super) observer: Option<Observer>,
 }
 
-impl Stepping {
+impl StepState {
     /// The accesses that are reported.
-    pub(super) fn observed(&self) -> Observed {
+    pub(super) fn observed(&self) -> ObservedAccesses {
         match &self.observer {
-            None => Observed::None,
-            Some(observer) if observer.reports_all() => Observed::All,
-            Some(_) => Observed::Fresh,
+            None => ObservedAccesses::None,
+            Some(observer) if observer.reports_all() => ObservedAccesses::All,
+            Some(_) => ObservedAccesses::Fresh,
         }
     }
 }
@@ -176,7 +176,7 @@ impl Context {
             return Ok(true);
         };
         let pc = self.calls.pc;
-        let alone = || Split { steps: [(pc, 0)].into(), next: 0, high_word: None };
+        let alone = || SegmentRest { steps: [(pc, 0)].into(), next: 0, high_word: None };
         self.split.get_or_insert_with(alone).high_word = Some(word);
         Ok(true)
     }

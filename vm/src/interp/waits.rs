@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::code::{Word, Words};
 use super::context::Context;
-use super::steps::{SingleText, Stepping};
+use super::steps::{SingleText, StepState};
 use crate::engine::{ContextId, Iteration, Slice, Stop};
 use crate::firmware::Firmware;
 use crate::polling::PollingLoop;
@@ -28,7 +28,7 @@ pub(super) fn wait<F: Firmware + ?Sized>(
     words: &Words,
     context: &mut Context,
     slice: &mut Slice<'_, F>,
-    steps: &mut Stepping,
+    steps: &mut StepState,
 ) -> Result<Option<Stop>, TrapKind> {
     let loops = Arc::clone(&steps.loops);
     let Some(polling) = ended_by(&loops, context.calls.pc) else { return Err(TrapKind::Unreachable) };
@@ -55,7 +55,7 @@ impl WaitingContext<'_> {
         &self,
         context: &mut Context,
         slice: &mut Slice<'_, F>,
-        steps: &mut Stepping,
+        steps: &mut StepState,
         text: &mut SingleText,
     ) -> Result<Option<Stop>, TrapKind> {
         let depth = context.calls.depth();

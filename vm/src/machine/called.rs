@@ -9,7 +9,7 @@ use super::{Machine, end_of};
 use crate::call::CallArguments;
 use crate::engine::{CallEnd, CallStack, ContextId, Engine, Polling, Slice};
 use crate::firmware::{Caller, Firmware, Outcome};
-use crate::loaded::Loaded;
+use crate::loaded::LoadedCode;
 use crate::thread::{Progress, ThreadState};
 use crate::trap::Trap;
 
@@ -40,10 +40,10 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         let running = slice.threads.running();
         slice.threads.set_running(id.thread());
         let end = match self.loaded.iter().flatten().find(|loaded| loaded.has_function(function)) {
-            Some(Loaded::Program(program)) => {
+            Some(LoadedCode::Program(program)) => {
                 self.engines.programs.call(id, program, function, arguments, stack, &mut slice)
             }
-            Some(Loaded::Image(_)) => CallEnd::Unsupported,
+            Some(LoadedCode::Image(_)) => CallEnd::Unsupported,
             None => call_firmware(function, arguments, &mut slice),
         };
         self.threads.set_running(running);

@@ -5,7 +5,7 @@ use kmotiondef::{CodeAddr, GuestAddr};
 use crate::dsp::{DspEngine, DspSnapshot};
 use crate::engine::{ContextId, Engine, Executor, ForeignSnapshot, Slice, Stack, Stop};
 use crate::firmware::Firmware;
-use crate::loaded::Loaded;
+use crate::loaded::LoadedCode;
 use crate::scheduler::ThreadSet;
 use crate::trap::TrapKind;
 
@@ -16,7 +16,7 @@ pub(super) struct EnginesSnapshot<S> {
     images: DspSnapshot,
 }
 
-/// One engine for each kind of [`Loaded`].
+/// One engine for each kind of [`LoadedCode`].
 ///
 /// A context is named with its code, which determines its engine.
 #[derive(Debug)]
@@ -37,14 +37,14 @@ impl<E: Engine> Engines<E> {
     pub(super) fn start<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,
-        loaded: &Loaded,
+        loaded: &LoadedCode,
         entry: GuestAddr,
         stack: Stack,
         firmware: &F,
     ) -> Result<(), TrapKind> {
         match loaded {
-            Loaded::Program(program) => self.programs.start(id, program, entry, stack, firmware),
-            Loaded::Image(image) => self.images.start(id, image, entry, stack, firmware),
+            LoadedCode::Program(program) => self.programs.start(id, program, entry, stack, firmware),
+            LoadedCode::Image(image) => self.images.start(id, image, entry, stack, firmware),
         }
     }
 
@@ -52,15 +52,15 @@ impl<E: Engine> Engines<E> {
     pub(super) fn resume<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,
-        loaded: &Loaded,
+        loaded: &LoadedCode,
         slice: &mut Slice<'_, F>,
     ) -> Stop {
         match loaded {
-            Loaded::Program(_) => {
+            LoadedCode::Program(_) => {
                 self.ran = id.thread().map_or(self.ran, |thread| self.ran.with(thread));
                 self.programs.resume(id, slice)
             }
-            Loaded::Image(_) => self.images.resume(id, slice),
+            LoadedCode::Image(_) => self.images.resume(id, slice),
         }
     }
 
@@ -79,26 +79,26 @@ impl<E: Engine> Engines<E> {
     }
 
     /// Reports whether `id` may be resumed with a [long slice](Slice::is_long).
-    pub(super) fn takes_long_slices(&self, id: ContextId, loaded: &Loaded) -> bool {
+    pub(super) fn takes_long_slices(&self, id: ContextId, loaded: &LoadedCode) -> bool {
         match loaded {
-            Loaded::Program(_) => self.programs.takes_long_slices(id),
-            Loaded::Image(_) => self.images.takes_long_slices(id),
+            LoadedCode::Program(_) => self.programs.takes_long_slices(id),
+            LoadedCode::Image(_) => self.images.takes_long_slices(id),
         }
     }
 
     /// The most bytes of its stack that `id` has used since its start.
-    pub(super) fn stack_used(&self, id: ContextId, loaded: &Loaded) -> u32 {
+    pub(super) fn stack_used(&self, id: ContextId, loaded: &LoadedCode) -> u32 {
         match loaded {
-            Loaded::Program(_) => self.programs.stack_used(id),
-            Loaded::Image(_) => self.images.stack_used(id),
+            LoadedCode::Program(_) => self.programs.stack_used(id),
+            LoadedCode::Image(_) => self.images.stack_used(id),
         }
     }
 
     /// The position of `id`: its instruction, then the calls that led to it, innermost first.
-    pub(super) fn backtrace(&self, id: ContextId, loaded: &Loaded) -> Vec<CodeAddr> {
+    pub(super) fn backtrace(&self, id: ContextId, loaded: &LoadedCode) -> Vec<CodeAddr> {
         match loaded {
-            Loaded::Program(_) => self.programs.backtrace(id),
-            Loaded::Image(_) => self.images.backtrace(id),
+            LoadedCode::Program(_) => self.programs.backtrace(id),
+            LoadedCode::Image(_) => self.images.backtrace(id),
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::wake::Wake;
 
 /// The point at which a tick is held.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Held {
+pub(super) enum HoldPoint {
     /// In the call-back.
     Callback {
         /// The address of the call-back function.
@@ -40,10 +40,10 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     #[must_use]
     pub fn held(&self) -> Option<(ContextId, Cycles)> {
         Some(match self.held? {
-            Held::Callback { begin, left, .. } => {
+            HoldPoint::Callback { begin, left, .. } => {
                 (ContextId::CALLBACK, begin + (super::CALLBACK_LIMIT - left))
             }
-            Held::Slice { thread, window, left, .. } => (ContextId::of(thread), window.end - left),
+            HoldPoint::Slice { thread, window, left, .. } => (ContextId::of(thread), window.end - left),
         })
     }
 
@@ -55,14 +55,14 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     }
 
     /// Continues the tick that was held.
-    pub(super) fn go_on(&mut self, held: Held) {
+    pub(super) fn go_on(&mut self, held: HoldPoint) {
         match held {
-            Held::Callback { address, begin, left } => {
+            HoldPoint::Callback { address, begin, left } => {
                 if let Some(spent) = self.resume_callback(address, begin, left) {
                     self.after_callback(begin, spent);
                 }
             }
-            Held::Slice { thread, window, left, woken } => {
+            HoldPoint::Slice { thread, window, left, woken } => {
                 // The thread may have been stopped or started meanwhile.
                 let state = self.threads.state(thread);
                 if matches!(state, ThreadState::Active(Progress::Going | Progress::Waiting(_))) {

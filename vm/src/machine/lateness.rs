@@ -9,8 +9,8 @@ use kmotiondef::{Cycles, Ticks};
 use super::Machine;
 use crate::engine::{Engine, Preemption, Stop};
 use crate::firmware::Firmware;
-use crate::loaded::Loaded;
-use crate::scheduler::Turn;
+use crate::loaded::LoadedCode;
+use crate::scheduler::SliceOwner;
 
 /// The cycles by which servo interrupts differ for bytecode.
 const UNEVENNESS: u64 = 64;
@@ -52,9 +52,9 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     }
 
     /// Returns whether the code of a thread is the processor's.
-    fn is_image(&self, turn: Turn) -> bool {
-        let Turn::User(thread) = turn else { return false };
-        matches!(self.loaded[thread.index()], Some(Loaded::Image(_)))
+    fn is_image(&self, turn: SliceOwner) -> bool {
+        let SliceOwner::User(thread) = turn else { return false };
+        matches!(self.loaded[thread.index()], Some(LoadedCode::Image(_)))
     }
 }
 

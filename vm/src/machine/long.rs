@@ -9,7 +9,7 @@ use kmotiondef::{Cycles, ThreadId, Ticks};
 use super::{Machine, Window, end_of, start_of};
 use crate::engine::{ContextId, Engine, Polling, Preemption, Slice, Stop};
 use crate::firmware::Firmware;
-use crate::scheduler::Turn;
+use crate::scheduler::SliceOwner;
 use crate::thread::{Progress, ThreadState};
 
 /// The most ordinary slices that a long slice replaces: a tenth of a second of board time.
@@ -50,7 +50,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         let active = self.threads.active();
         // A slice that is over must end exactly there.
         let is_split = self.config.preemption == Preemption::Instructions;
-        if active.len() != 1 || self.turn != Turn::Primary || is_split {
+        if active.len() != 1 || self.turn != SliceOwner::Primary || is_split {
             return None;
         }
         let thread = ThreadId::all().find(|thread| active.contains(*thread))?;

@@ -5,12 +5,12 @@ use kmotiondef::{Cycles, ThreadId, Ticks};
 
 use super::Machine;
 use super::engines::EnginesSnapshot;
-use super::held::Held;
+use super::held::HoldPoint;
 use crate::engine::{Engine, ForeignSnapshot};
 use crate::firmware::Firmware;
-use crate::loaded::Loaded;
+use crate::loaded::LoadedCode;
 use crate::memory::snapshot::MemorySnapshot;
-use crate::scheduler::{ThreadSet, Turn};
+use crate::scheduler::{SliceOwner, ThreadSet};
 use crate::thread::Threads;
 
 /// Everything that a machine holds except its settings and its firmware; `S` is the snapshot of its engine.
@@ -18,13 +18,13 @@ use crate::thread::Threads;
 pub struct Snapshot<S> {
     memory: MemorySnapshot,
     threads: Threads,
-    loaded: [Option<Loaded>; ThreadId::MAX as usize],
+    loaded: [Option<LoadedCode>; ThreadId::MAX as usize],
     longest_steps: [Cycles; ThreadId::MAX as usize],
     engines: EnginesSnapshot<S>,
     tick: Ticks,
-    turn: Turn,
+    turn: SliceOwner,
     stack_reported: ThreadSet,
-    held: Option<Held>,
+    held: Option<HoldPoint>,
     shadow: Option<Cycles>,
 }
 

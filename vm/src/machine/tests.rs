@@ -149,7 +149,7 @@ fn a_thread_that_pauses_itself_runs_on_to_the_end_of_its_slice() {
 fn resuming_a_thread_that_never_ran_makes_it_active_and_idle() {
     let machine = check(&[(1, &steps(&[("resume", 2), ("resume", 3)])), (2, SLICES)], 9, &["26018 1 99"]);
     assert_eq!(machine.threads().active().bits(), 0b100);
-    assert_eq!(machine.turn, Turn::Primary);
+    assert_eq!(machine.turn, SliceOwner::Primary);
 }
 
 #[test]
@@ -274,7 +274,7 @@ fn waiting_costs_nothing_when_nothing_else_happens() {
 }
 
 /// The observable state of a run.
-fn observe(machine: &Machine<Fake>) -> (Vec<String>, u64, ThreadSet, i32, Turn) {
+fn observe(machine: &Machine<Fake>) -> (Vec<String>, u64, ThreadSet, i32, SliceOwner) {
     let firmware = machine.firmware();
     let count = machine.memory().peek(OUT);
     (firmware.log.clone(), firmware.ticks, machine.threads().active(), count, machine.turn)

@@ -88,7 +88,7 @@ fn alignment_is_checked_for_programs_and_not_for_the_kernel() {
 #[test]
 fn with_board_faults_some_places_are_silent_and_low_bits_are_ignored() {
     let mut memory = GuestMemory::new();
-    memory.set_faults(Faults::Board);
+    memory.set_faults(FaultPolicy::Board);
     assert_eq!(memory.load::<i32>(at(0)), Ok(0));
     assert_eq!(memory.load::<f64>(at(ROM_SIZE - 3)), Ok(0.0), "the last double of the ROM");
     assert_eq!(memory.load::<u8>(at(ROM_SIZE)), unmapped(ROM_SIZE, Access::Read));
@@ -107,7 +107,7 @@ fn with_board_faults_some_places_are_silent_and_low_bits_are_ignored() {
 #[test]
 fn with_board_faults_program_text_is_still_protected() {
     let mut memory = GuestMemory::new();
-    memory.set_faults(Faults::Board);
+    memory.set_faults(FaultPolicy::Board);
     memory.protect(ThreadId::new(1).expect("1 is a thread"), at(PROGRAM_BASE)..at(PROGRAM_BASE + 32));
     let protected = Err(TrapKind::WriteProtected { addr: at(PROGRAM_BASE + 28) });
     assert_eq!(memory.store(at(PROGRAM_BASE + 30), 0_u32), protected);

@@ -10,7 +10,7 @@ use cranelift_jit::{ArenaMemoryProvider, JITBuilder, JITModule};
 use cranelift_module::{FuncId, Module, default_libcall_names};
 
 use super::compile::{CompileError, StackUse, compile, host_isa};
-use super::entry::{Begin, RunPiece};
+use super::entry::{BeginFn, RunPiece};
 use super::piece::{Handover, Marks, Places};
 use super::translate::FirmwareFacts;
 use crate::engine::Preemption;
@@ -46,7 +46,7 @@ pub(super) struct Entry {
 pub(super) struct MachineCode {
     /// The memory that holds the code.
     _memory: CodeMemory,
-    begin: Begin,
+    begin: BeginFn,
     entries: Vec<Entry>,
     loops: Vec<PollingLoop>,
     stack: StackUse,
@@ -135,7 +135,7 @@ impl MachineCode {
     }
 
     /// The function that begins the outermost call.
-    pub(super) const fn begin(&self) -> Begin {
+    pub(super) const fn begin(&self) -> BeginFn {
         self.begin
     }
 
@@ -161,9 +161,9 @@ fn piece_at(pointer: *const u8) -> RunPiece {
 }
 
 /// The function at `pointer`, which begins the outermost call.
-fn begin_at(pointer: *const u8) -> Begin {
-    // SAFETY: it is translated with the signature of `Begin` (`begin_signature`).
-    unsafe { std::mem::transmute::<*const u8, Begin>(pointer) }
+fn begin_at(pointer: *const u8) -> BeginFn {
+    // SAFETY: it is translated with the signature of `BeginFn` (`begin_signature`).
+    unsafe { std::mem::transmute::<*const u8, BeginFn>(pointer) }
 }
 
 /// A piece of machine code that works on a [`Handover`].

@@ -13,7 +13,7 @@ use crate::call::ArgumentList;
 use crate::engine::{ContextId, Iteration, Slice, Stack, Stop};
 use crate::filter::owner_code;
 use crate::firmware::{Firmware, Outcome};
-use crate::interp::observe::{AccessPart, Made, Observer};
+use crate::interp::observe::{AccessPart, CompletedAccess, Observer};
 use crate::kind::OpKind;
 use crate::operand::{FuncRef, SigRef};
 use crate::polling::TimeTests;
@@ -24,7 +24,7 @@ use crate::wake::Wake;
 
 /// The way in which a resumed context continues.
 #[derive(Clone, Debug)]
-enum Next {
+enum Continuation {
     /// Continue with the answer to its last request.
     Answer(Answer),
     /// Continue with the answer to this request, which a long slice could not give.
@@ -88,7 +88,7 @@ pub(super) struct Context {
     at: usize,
     /// Address of the current call's frame; the top of the stack outside all calls.
     stack_pointer: u32,
-    next: Next,
+    next: Continuation,
     /// The generation of the protected ranges for which the state's windows were computed.
     protected: Option<u64>,
     /// The arguments of the firmware call in progress.
@@ -98,16 +98,16 @@ pub(super) struct Context {
 
 /// A context as it was at an instant.
 #[derive(Debug)]
-pub(super) struct Saved {
+pub(super) struct SavedContext {
     fiber: SavedFiber,
     program: Arc<Program>,
     stack: Stack,
     at: usize,
     stack_pointer: u32,
-    next: Next,
+    next: Continuation,
 }
 
-impl Saved {
+impl SavedContext {
     /// The context. Only one may exist at a time.
     pub(super) fn context(&self) -> Context {
         let Self { fiber, program, stack, at, stack_pointer, next } = self;
@@ -127,8 +127,8 @@ impl Saved {
 
 impl Context {
     /// Returns a copy of the context.
-    pub(super) fn save(&self) -> Saved {
-        Saved {
+    pub(super) fn save(&self) -> SavedContext {
+        SavedContext {
             fiber: self.fiber.save(),
             program: Arc::clone(&self.program),
             stack: self.stack,
@@ -146,7 +146,7 @@ impl Context {
             stack,
             at: function.0 as usize,
             stack_pointer: stack.top,
-            next: Next::Answer(Answer::Slot(0)),
+            next: Continuation::Answer(Answer::Slot(0)),
             protected: None,
             arguments: ArgumentList::default(),
             checked: CheckedCalls::default(),
@@ -187,7 +187,7 @@ impl Context {
 
     /// Ends the context: whenever it is resumed, it stops with `stop`.
     pub(super) fn end(&mut self, stop: Stop) -> Stop {
-        self.next = Next::Nothing(stop.clone());
+        self.next = Continuation::Nothing(stop.clone());
         stop
     }
 
@@ -205,20 +205,20 @@ impl Context {
             state.ram.owners.set(observer.owners().first());
         }
         let mut step = match &self.next {
-            Next::Answer(answer) => NextStep::Go(*answer),
-            Next::Request(request) => {
+            Continuation::Answer(answer) => NextStep::Go(*answer),
+            Continuation::Request(request) => {
                 let request = *request;
                 self.answer(id, slice, request, observer.as_mut())?
             }
-            Next::HighWord(word) => {
+            Continuation::HighWord(word) => {
                 slice.store_high_word(*word)?;
                 NextStep::Go(Answer::Slot(0))
             }
-            Next::CallFirmware(address, signature) => {
+            Continuation::CallFirmware(address, signature) => {
                 let (address, signature) = (*address, *signature);
                 self.call_firmware(id, slice, address, signature)?
             }
-            Next::Nothing(stop) => return Ok(stop.clone()),
+            Continuation::Nothing(stop) => return Ok(stop.clone()),
         };
         loop {
             let answer = match step {
@@ -263,7 +263,7 @@ impl Context {
     }
 
     /// Stops the context, to continue later with `next`.
-    fn halt(&mut self, halt: Halt, next: Next) -> NextStep {
+    fn halt(&mut self, halt: Halt, next: Continuation) -> NextStep {
         self.next = next;
         NextStep::Stop(halt)
     }
@@ -278,10 +278,10 @@ impl Context {
     ) -> Result<NextStep, TrapKind> {
         let address = GuestAddr::new(request.a as u32);
         if slice.is_long && request.involves_board() {
-            return Ok(self.halt(Halt::NeedsBoard, Next::Request(request)));
+            return Ok(self.halt(Halt::NeedsBoard, Continuation::Request(request)));
         }
         let slot = match request.reason().unwrap_or(Reason::Unreachable) {
-            Reason::Preempted => return Ok(self.halt(Halt::Preempted, Next::Answer(Answer::Slot(0)))),
+            Reason::Preempted => return Ok(self.halt(Halt::Preempted, Continuation::Answer(Answer::Slot(0)))),
             Reason::Load => slice.load_slot(address, request.width().ok_or(TrapKind::Unreachable)?)?,
             Reason::Store => {
                 slice.store_slot(address, request.width().ok_or(TrapKind::Unreachable)?, request.b)?;
@@ -292,7 +292,7 @@ impl Context {
                 let word = slice.store_low_word(address, width, request.b)?;
                 self.report(id, slice, &request, observer);
                 let Some(word) = word else { return Ok(NextStep::Go(Answer::Slot(0))) };
-                return Ok(self.halt(Halt::Preempted, Next::HighWord(word)));
+                return Ok(self.halt(Halt::Preempted, Continuation::HighWord(word)));
             }
             Reason::Accessed => {
                 self.report(id, slice, &request, observer);
@@ -355,7 +355,13 @@ impl Context {
         let filter = &self.fiber.state().filter;
         let is_known = parts[1].is_none() && filter.knows(self.at, address);
         for part in parts.into_iter().flatten().filter(|_| !is_known) {
-            observer.report(id, &self.program, Made { word: self.at, part, value }, Some(filter), slice);
+            observer.report(
+                id,
+                &self.program,
+                CompletedAccess { word: self.at, part, value },
+                Some(filter),
+                slice,
+            );
         }
     }
 
@@ -420,10 +426,10 @@ impl Context {
         Ok(match outcome {
             Outcome::Done(value) => NextStep::Go(Answer::Slot(value.into_slot())),
             Outcome::Wait(wake) => {
-                self.next = Next::CallFirmware(address, signature);
+                self.next = Continuation::CallFirmware(address, signature);
                 NextStep::Wait(wake)
             }
-            Outcome::End => self.halt(Halt::Ended, Next::Nothing(Stop::Ended)),
+            Outcome::End => self.halt(Halt::Ended, Continuation::Nothing(Stop::Ended)),
         })
     }
 }

@@ -3,15 +3,15 @@
 
 use super::piece::{Handover, Places};
 use super::request::Request;
-use super::state::{State, WaysOut};
+use super::state::{HostFunctions, State};
 use crate::arith;
 
 /// The functions of this file that compiled code calls.
-pub(super) const WAYS_OUT: WaysOut = WaysOut { leave, convert };
+pub(super) const WAYS_OUT: HostFunctions = HostFunctions { request: leave, convert };
 
 /// The function that begins the outermost call: a piece of compiled code that calls the thunk at the second pointer on
 /// the stack that the state describes.
-pub(super) type Begin = unsafe extern "C" fn(*const State, *const u8);
+pub(super) type BeginFn = unsafe extern "C" fn(*const State, *const u8);
 
 /// A piece of machine code; its result is the number of the exit it took.
 pub(super) type RunPiece = unsafe extern "C" fn(*mut Handover, *const Places) -> u32;
@@ -22,7 +22,7 @@ pub(super) type RunPiece = unsafe extern "C" fn(*mut Handover, *const Places) ->
 /// `begin`, `thunk` and the state's callee are compiled code of one program, the thunk is one for functions like the
 /// callee, and the code is kept until this returns. `state` is valid until then, and whenever the fiber runs, its
 /// pointers are those of guest memory.
-pub(super) unsafe fn enter(begin: Begin, thunk: *const u8, state: *const State) {
+pub(super) unsafe fn enter(begin: BeginFn, thunk: *const u8, state: *const State) {
     // SAFETY: the caller vouches for the code and the state.
     unsafe { begin(state, thunk) }
 }

@@ -18,7 +18,7 @@ use super::code::{Entry, MachineCode};
 use super::entry::{self, SUSPENSION};
 use super::protected::ProtectedBlocks;
 use super::request::{Reason, Request, Yielder};
-use super::state::{PutBack, State};
+use super::state::{Restore, State};
 use crate::engine::Stack;
 use crate::memory::GuestMemory;
 use crate::polling::PollingLoop;
@@ -109,7 +109,7 @@ type Running = ManuallyDrop<Coroutine<u64, Request, (), View>>;
 pub(super) struct Fiber {
     coroutine: Running,
     place: Arc<Home>,
-    rest: Rest,
+    rest: FiberState,
 }
 
 // SAFETY: a fiber may be continued by another thread than the one that began it. Nothing on its stack belongs to a
@@ -121,7 +121,7 @@ unsafe impl Send for Fiber {}
 
 /// The parts of a fiber besides its coroutine.
 #[derive(Clone)]
-struct Rest {
+struct FiberState {
     code: Arc<MachineCode>,
     /// The addresses of guest memory and of the map of protected blocks, once the fiber has begun.
     ram: Option<(*mut u8, *mut u8, *const u8)>,
@@ -159,7 +159,7 @@ impl Fiber {
             unsafe { entry::enter(begin, thunk, shared) };
         };
         let coroutine = ManuallyDrop::new(Coroutine::with_stack(View(Arc::as_ptr(&place)), body));
-        Self { coroutine, place, rest: Rest { code, ram: None, resolving: false } }
+        Self { coroutine, place, rest: FiberState { code, ram: None, resolving: false } }
     }
 
     /// A copy of the fiber, which can later continue from this point.
@@ -259,7 +259,7 @@ pub(super) struct SavedFiber {
     bytes: Box<[MaybeUninit<u8>]>,
     state: Box<State>,
     place: Arc<Home>,
-    rest: Rest,
+    rest: FiberState,
 }
 
 // SAFETY: as for `Fiber`. A copy owns its bytes and its state; it only keeps the home alive until its engine, used by
@@ -274,7 +274,7 @@ impl SavedFiber {
         let top = ptr::with_exposed_provenance_mut::<MaybeUninit<u8>>(lowest);
         // SAFETY: as many bytes were copied from there, and only this fiber uses the home.
         unsafe { ptr::copy_nonoverlapping(self.bytes.as_ptr(), top, self.bytes.len()) };
-        self.place.state.put_back(&self.state);
+        self.place.state.restore(&self.state);
         // SAFETY: the coroutine refers only to its stack, which is as it was when the copy was made.
         let coroutine = unsafe { ptr::read(&raw const self.coroutine) };
         Fiber { coroutine, place: Arc::clone(&self.place), rest: self.rest.clone() }

@@ -25,7 +25,7 @@ pub(crate) struct Handover {
     /// The address at which the processor continues, if it is not a constant.
     pub(crate) target: u32,
     /// The watched stack.
-    pub(crate) stack: Watch,
+    pub(crate) stack: StackBounds,
     /// Not 0 after a store to on-chip RAM.
     pub(crate) touched: u32,
     /// The destination of suppressed stores.
@@ -65,7 +65,7 @@ pub(crate) struct Time {
 /// Bounds of the stack pointer.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(crate) struct Watch {
+pub(crate) struct StackBounds {
     /// The lowest allowed value.
     pub(crate) limit: u32,
     /// The highest allowed value.
@@ -80,7 +80,7 @@ impl Default for Handover {
             time: Time::default(),
             branched_at: [0; 2],
             target: 0,
-            stack: Watch { limit: 0, top: u32::MAX, lowest: u32::MAX },
+            stack: StackBounds { limit: 0, top: u32::MAX, lowest: u32::MAX },
             touched: 0,
             scratch: 0,
             values: [0; VALUES],

@@ -10,13 +10,13 @@ use crate::program::Program;
 const MOST: usize = 32;
 
 /// A program, where its machine code loses the processor, and that code; `None` where it cannot be compiled.
-type Known = (Program, Preemption, Option<Arc<MachineCode>>);
+type CacheEntry = (Program, Preemption, Option<Arc<MachineCode>>);
 
 /// Machine code of the most recently compiled programs, for engines whose boards have the same firmware.
 ///
 /// A program is identified by its contents, not by its address, so boards that are made from one image share its code.
 #[derive(Clone, Debug, Default)]
-pub struct SharedCode(Arc<Mutex<Vec<Known>>>);
+pub struct SharedCode(Arc<Mutex<Vec<CacheEntry>>>);
 
 impl SharedCode {
     /// Returns the code of `program`. Compilation does not block others; two simultaneous requests for one program both
@@ -41,7 +41,7 @@ impl SharedCode {
 
     fn find(&self, program: &Program, preemption: Preemption) -> Option<Option<Arc<MachineCode>>> {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_same = |(other, kind, _): &Known| *kind == preemption && other == program;
+        let is_same = |(other, kind, _): &CacheEntry| *kind == preemption && other == program;
         let index = known.iter().position(is_same)?;
         let found = known.remove(index);
         let code = found.2.clone();

@@ -24,36 +24,36 @@ pub(super) const CALLS: usize = (STACK_SIZE / BYTES_PER_CALL) as usize;
 const _: () = assert!(CALLS.is_power_of_two());
 
 /// The function by which compiled code makes a request: state, code, instruction, stack pointer and two operands.
-pub(super) type Leave = unsafe extern "C" fn(*const State, u32, u32, u32, u64, u64) -> u64;
+pub(super) type RequestFn = unsafe extern "C" fn(*const State, u32, u32, u32, u64, u64) -> u64;
 
 /// A conversion that compiled code leaves to Rust.
-pub(super) type Convert = extern "C" fn(f64) -> i64;
+pub(super) type ConvertFn = extern "C" fn(f64) -> i64;
 
 /// The functions that compiled code calls by pointers in the state.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(super) struct WaysOut {
+pub(super) struct HostFunctions {
     /// The function by which compiled code makes a request.
-    pub(super) leave: Leave,
+    pub(super) request: RequestFn,
     /// The conversion of a double to 64 bits modulo 2⁶⁴, for values out of range.
-    pub(super) convert: Convert,
+    pub(super) convert: ConvertFn,
 }
 
 /// Restores cells from a copy.
-pub(super) trait PutBack {
+pub(super) trait Restore {
     /// Takes over all values of `saved`.
-    fn put_back(&self, saved: &Self);
+    fn restore(&self, saved: &Self);
 }
 
-impl<T: Copy> PutBack for Cell<T> {
-    fn put_back(&self, saved: &Self) {
+impl<T: Copy> Restore for Cell<T> {
+    fn restore(&self, saved: &Self) {
         self.set(saved.get());
     }
 }
 
-impl<T: PutBack, const N: usize> PutBack for [T; N] {
-    fn put_back(&self, saved: &Self) {
-        self.iter().zip(saved).for_each(|(own, saved)| own.put_back(saved));
+impl<T: Restore, const N: usize> Restore for [T; N] {
+    fn restore(&self, saved: &Self) {
+        self.iter().zip(saved).for_each(|(own, saved)| own.restore(saved));
     }
 }
 
@@ -67,9 +67,9 @@ macro_rules! shared {
             $($(#[$row])* pub(super) $field: $ty,)*
         }
 
-        impl PutBack for $name {
-            fn put_back(&self, saved: &Self) {
-                $(self.$field.put_back(&saved.$field);)*
+        impl Restore for $name {
+            fn restore(&self, saved: &Self) {
+                $(self.$field.restore(&saved.$field);)*
             }
         }
     )*};
@@ -139,7 +139,7 @@ shared! {
         /// Guest memory.
         ram: Ram,
         /// The functions that compiled code calls.
-        ways_out: WaysOut,
+        ways_out: HostFunctions,
         /// The flags of the slice.
         signs: Signs,
         /// The handle that suspends the fiber, from its first instruction on.
@@ -159,20 +159,20 @@ shared! {
     }
 }
 
-impl PutBack for AccessFilter {
-    fn put_back(&self, saved: &Self) {
+impl Restore for AccessFilter {
+    fn restore(&self, saved: &Self) {
         Self::put_back(self, saved);
     }
 }
 
-impl PutBack for WaysOut {
+impl Restore for HostFunctions {
     // They are the same in every state.
-    fn put_back(&self, _: &Self) {}
+    fn restore(&self, _: &Self) {}
 }
 
 impl State {
     /// The state of a context that has not begun and will run on `stack`.
-    pub(super) fn new(stack: Stack, ways_out: WaysOut) -> Self {
+    pub(super) fn new(stack: Stack, ways_out: HostFunctions) -> Self {
         let window = || Window { start: Cell::new(0), length: Cell::new(0) };
         Self {
             budget: Cell::new(0),

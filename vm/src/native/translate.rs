@@ -111,7 +111,7 @@ pub(super) fn function_signature(parameters: &[Class]) -> Signature {
     signature
 }
 
-/// The machine signature of [`Begin`](super::entry::Begin).
+/// The machine signature of [`BeginFn`](super::entry::BeginFn).
 pub(super) fn begin_signature(module: &dyn Module) -> Signature {
     let mut signature = module.make_signature();
     signature.params = vec![AbiParam::new(types::I64); 2];
@@ -123,7 +123,7 @@ pub(super) fn thunk_signature() -> Signature {
     function_signature(&[])
 }
 
-/// The machine signature of [`Leave`](super::entry::Leave).
+/// The machine signature of [`RequestFn`](super::entry::RequestFn).
 fn leave_signature(convention: CallConv) -> Signature {
     let mut signature = Signature::new(convention);
     let parameters = [types::I64, types::I32, types::I32, types::I32, types::I64, types::I64];
@@ -163,7 +163,7 @@ pub(super) fn translate_request(
         field(types::I64, offset_of!(Request, a)),
         field(types::I64, offset_of!(Request, b)),
     ];
-    let leave = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, ways_out.leave)));
+    let leave = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, ways_out.request)));
     let signature = builder.import_signature(leave_signature(module.isa().default_call_conv()));
     let call = builder.ins().call_indirect(signature, leave, &arguments);
     let answer = builder.inst_results(call)[0];
@@ -607,7 +607,7 @@ impl<'a, 'b> Translator<'a, 'b> {
     /// Makes a request that the program makes every time it executes this instruction.
     fn usual_request(&mut self, code: u32, at: usize, a: Value, b: Value) -> Value {
         let arguments = self.request_arguments(code, at, a, b);
-        let leave = self.load_pointer(offset_of!(State, ways_out.leave));
+        let leave = self.load_pointer(offset_of!(State, ways_out.request));
         let call = self.builder.ins().call_indirect(self.calls.leave, leave, &arguments);
         self.reload_budget();
         self.builder.inst_results(call)[0]

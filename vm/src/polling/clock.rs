@@ -146,9 +146,9 @@ impl Uses {
         self.terms.remove(&assigned);
         self.results.remove(&assigned);
         match made {
-            Made::Other => {}
-            Made::Term(term) => drop(self.terms.insert(assigned, term)),
-            Made::Comparison(comparison) => {
+            InstResult::Other => {}
+            InstResult::Term(term) => drop(self.terms.insert(assigned, term)),
+            InstResult::Comparison(comparison) => {
                 self.results.insert(assigned);
                 self.comparisons.push(comparison);
             }
@@ -157,9 +157,9 @@ impl Uses {
     }
 
     /// The result of an instruction, which `is_timed` if it uses the time.
-    fn made(&self, op: &Op, is_timed: bool) -> Option<Made> {
+    fn made(&self, op: &Op, is_timed: bool) -> Option<InstResult> {
         if !is_timed {
-            return Some(Made::Other);
+            return Some(InstResult::Other);
         }
         let term = |register: RegF64| self.terms.get(&register.0).cloned();
         let compare = |a: RegF64, relation, b: RegF64| {
@@ -168,22 +168,22 @@ impl Uses {
                 (None, Some(right)) => (Term::Register(a.0), right),
                 (Some(_), Some(_)) | (None, None) => return None,
             };
-            Some(Made::Comparison(Comparison { left, relation, right }))
+            Some(InstResult::Comparison(Comparison { left, relation, right }))
         };
         if let Op::MovF64 { src, .. } = *op {
-            return term(src).map(Made::Term);
+            return term(src).map(InstResult::Term);
         }
         if let Op::AddF64 { a, b, .. } = *op {
             return match (term(a), term(b)) {
-                (Some(term), None) => Some(Made::Term(Term::Sum(Box::new(term), b.0))),
-                (None, Some(term)) => Some(Made::Term(Term::Sum(Box::new(term), a.0))),
+                (Some(term), None) => Some(InstResult::Term(Term::Sum(Box::new(term), b.0))),
+                (None, Some(term)) => Some(InstResult::Term(Term::Sum(Box::new(term), a.0))),
                 (Some(_), Some(_)) | (None, None) => None,
             };
         }
         if let Op::SubF64 { a, b, .. } = *op {
             return match (term(a), term(b)) {
-                (Some(term), None) => Some(Made::Term(Term::Difference(Box::new(term), b.0))),
-                (None, Some(term)) => Some(Made::Term(Term::Rest(a.0, Box::new(term)))),
+                (Some(term), None) => Some(InstResult::Term(Term::Difference(Box::new(term), b.0))),
+                (None, Some(term)) => Some(InstResult::Term(Term::Rest(a.0, Box::new(term)))),
                 (Some(_), Some(_)) | (None, None) => None,
             };
         }
@@ -198,7 +198,7 @@ impl Uses {
 }
 
 /// The result of an instruction.
-enum Made {
+enum InstResult {
     /// A value that does not depend on the time.
     Other,
     Term(Term),

@@ -188,14 +188,14 @@ const fn result(op: &Op) -> Option<Class> {
 }
 
 /// An operand that is checked by its type.
-trait Checked: OperandType {
+trait CheckOperand: OperandType {
     /// Checks that the operand refers to something that exists.
     fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind>;
 }
 
 macro_rules! any_value {
     ($($operand:ident),*) => {$(
-        impl Checked for $operand {
+        impl CheckOperand for $operand {
             fn check(self, _: &Body<'_>) -> Result<(), VerifyErrorKind> {
                 Ok(())
             }
@@ -206,7 +206,7 @@ any_value!(Addr, Bits32, Classes, Count, Count32, Imm, Imm16, Off);
 
 macro_rules! registers {
     ($($register:ident: $class:ident),*) => {$(
-        impl Checked for $register {
+        impl CheckOperand for $register {
             fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind> {
                 match body.function.classes.get(self.index()) {
                     None => Err(VerifyErrorKind::NoRegister(self.0)),
@@ -219,7 +219,7 @@ macro_rules! registers {
 }
 registers!(RegI32: I32, RegI64: I64, RegF32: F32, RegF64: F64);
 
-impl Checked for Pool {
+impl CheckOperand for Pool {
     fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind> {
         let size = body.program.pool.len();
         if usize::try_from(self.0).is_ok_and(|index| index < size) {
@@ -230,19 +230,19 @@ impl Checked for Pool {
     }
 }
 
-impl Checked for SigRef {
+impl CheckOperand for SigRef {
     fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind> {
         signature(body.program, self).map(|_| ())
     }
 }
 
-impl Checked for FuncRef {
+impl CheckOperand for FuncRef {
     fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind> {
         body.function_signature(self).map(|_| ())
     }
 }
 
-impl Checked for Label {
+impl CheckOperand for Label {
     fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind> {
         let target = usize::try_from(self.0).unwrap_or(usize::MAX);
         let offset = target.checked_sub(body.function.body.start);

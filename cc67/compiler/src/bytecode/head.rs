@@ -13,7 +13,7 @@ use crate::ir::inst::Class;
 pub(super) const CLASSES: usize = 16;
 
 /// Number of words for the given constants and signatures.
-pub(crate) fn words(pool: &[u64], signatures: &[Signature]) -> u32 {
+pub(crate) fn word_count(pool: &[u64], signatures: &[Signature]) -> u32 {
     let signatures = signatures.iter().map(|signature| 1 + signature.params.len().div_ceil(CLASSES));
     (1 + pool.len() + signatures.sum::<usize>()) as u32
 }

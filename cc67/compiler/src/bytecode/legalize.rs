@@ -61,7 +61,7 @@ pub(super) fn legalize(function: &mut Function) -> FrameLayout {
         let id = function.layout[index];
         legalizer.is_in_loop = is_in_loop;
         if !function.is_only_way(before, id, &predecessors) {
-            legalizer.forget();
+            legalizer.clear_constants();
         }
         before = Some(id);
         let insts = std::mem::take(&mut function.blocks[id].insts);
@@ -182,7 +182,7 @@ struct Legalizer {
 
 impl Legalizer {
     /// Drops the constants at the beginning of a block that may be reached from code without them.
-    fn forget(&mut self) {
+    fn clear_constants(&mut self) {
         self.loaded.clear();
         self.oldest = 0;
     }

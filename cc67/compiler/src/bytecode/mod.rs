@@ -33,16 +33,16 @@ use crate::diag::Diagnostic;
 use crate::ir::function::Function;
 use crate::source::Span;
 use pool::ConstantPool;
-use text::Added;
+use text::FunctionText;
 
 /// Bytes of guest frame that a function can have: 16 bits of units of eight bytes.
 pub const MAX_FRAME: u32 = u16::MAX as u32 * WORD as u32;
 
 /// A function in words.
 #[derive(Debug)]
-pub(crate) struct Generated {
+pub(crate) struct GeneratedFunction {
     /// Its words and their symbols, relocations and positions.
-    pub(crate) added: Added,
+    pub(crate) text: FunctionText,
     /// Bytes of its frame in guest memory.
     pub(crate) frame: u32,
     /// The locations of the source's locals.
@@ -71,7 +71,11 @@ impl Generator {
     ///
     /// # Errors
     /// That the function is too large for the machine.
-    pub(crate) fn function(&mut self, mut ir: Function, name: &str) -> Result<Generated, Box<Diagnostic>> {
+    pub(crate) fn function(
+        &mut self,
+        mut ir: Function,
+        name: &str,
+    ) -> Result<GeneratedFunction, Box<Diagnostic>> {
         let frame = legalize::legalize(&mut ir);
         let size =
             frame.size.filter(|size| *size <= MAX_FRAME).ok_or_else(|| frame_too_large(ir.span, name))?;
@@ -86,7 +90,7 @@ impl Generator {
         let places = variables::PlacedWords::take(&mut code);
         let added = self.text.append(ir.signature, &registers, size, code);
         let (variables, inlined) = places.collect(&ir, &frame, &registers, &added.words);
-        Ok(Generated { added, frame: size, variables, inlined, exceeded: Vec::new() })
+        Ok(GeneratedFunction { text: added, frame: size, variables, inlined, exceeded: Vec::new() })
     }
 
     /// The words of all functions so far.

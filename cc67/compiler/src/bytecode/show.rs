@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::legalize;
-use super::{Generated, Text};
+use super::{GeneratedFunction, Text};
 use crate::ir::function::{Block, Function, Signatures};
 use crate::ir::inst::{CodeOrigin, Terminator};
 use crate::ir::text::{self, SymbolNames};
@@ -35,11 +35,11 @@ pub(crate) fn legalized(mut function: Function, signatures: &Signatures, names: 
 }
 
 /// The words of a function; words that the linker completes show the names of their symbols.
-pub(crate) fn words(text: &Text, generated: &Generated, names: &dyn SymbolNames) -> String {
+pub(crate) fn words(text: &Text, generated: &GeneratedFunction, names: &dyn SymbolNames) -> String {
     let mut shown = String::new();
-    for (number, op) in text.numbered(&generated.added.words) {
+    for (number, op) in text.numbered(&generated.text.words) {
         let _ = write!(shown, "@{number}: {op}");
-        let relocation = generated.added.relocations.iter().find(|relocation| relocation.word == number);
+        let relocation = generated.text.relocations.iter().find(|relocation| relocation.word == number);
         if let Some(Relocation { kind, symbol, .. }) = relocation {
             let what = match kind {
                 RelocationKind::Address => "+ &",

@@ -15,7 +15,7 @@ use vm::verify::verify_image;
 use crate::diag::Sink;
 use crate::driver::generate;
 use crate::firmware::{FirmwareSymbol, FirmwareSymbols};
-use crate::link::{self, Linked};
+use crate::link::{self, LinkedProgram};
 use crate::lower::testing;
 use crate::passes::Level;
 
@@ -67,7 +67,7 @@ impl Firmware for Nothing {
     }
 }
 
-fn build(source: &str, level: Level) -> Linked {
+fn build(source: &str, level: Level) -> LinkedProgram {
     let (unit, sources) = testing::unit(source);
     let mut sink = Sink::new();
     let object = generate(&unit, &sources, level, Timing::Fast, &mut sink);

@@ -1,7 +1,7 @@
 //! The words of a unit, and the operations that move and complete them.
 //!
 //! In a unit a label counts from the unit's first word, and constants and signatures have the unit's own numbers. A
-//! program shares both among its units ([`Numbers`]), and its words move. Code that links or writes objects handles
+//! program shares both among its units ([`Renumbering`]), and its words move. Code that links or writes objects handles
 //! ranges of words and bytes, not instructions.
 
 use std::ops::Range;
@@ -24,7 +24,7 @@ pub struct Text(Vec<Op>);
 
 /// A function as it was added to a text.
 #[derive(Debug)]
-pub(crate) struct Added {
+pub(crate) struct FunctionText {
     /// Its words, beginning with the `func` word.
     pub(crate) words: Range<u32>,
     /// Words that hold addresses, ascending.
@@ -34,9 +34,9 @@ pub(crate) struct Added {
 }
 
 /// The numbers that a unit's words have in a program.
-pub(crate) struct Numbers<'a> {
+pub(crate) struct Renumbering<'a> {
     /// By how many words the function moves.
-    pub(crate) moved: u32,
+    pub(crate) word_offset: u32,
     /// The program's number of each constant.
     pub(crate) pool: &'a [u32],
     /// The program's number of each signature.
@@ -61,7 +61,7 @@ impl Text {
         registers: &Registers,
         frame: u32,
         code: Code,
-    ) -> Added {
+    ) -> FunctionText {
         let first = self.len();
         let regs = Count(registers.classes.len() as u16);
         let sig = SigRef(signature.as_u32() as u16);
@@ -76,7 +76,7 @@ impl Text {
         let place = |(index, (word, span)): (usize, (u32, Span))| {
             (if index == 0 { first } else { start + word }, span)
         };
-        Added {
+        FunctionText {
             words: first..self.len(),
             relocations: code.relocations.into_iter().map(moved).collect(),
             spans: code.spans.into_iter().enumerate().map(place).collect(),
@@ -87,7 +87,7 @@ impl Text {
     pub(crate) fn linked<'a>(
         &'a self,
         words: Range<u32>,
-        numbers: &'a Numbers<'_>,
+        numbers: &'a Renumbering<'_>,
     ) -> impl Iterator<Item = [u8; WORD]> + 'a {
         let words = self.0.get(words.start as usize..words.end as usize).unwrap_or_default();
         words.iter().map(|op| numbers.apply(*op).encode())
@@ -128,19 +128,19 @@ impl Text {
     }
 }
 
-impl Numbers<'_> {
+impl Renumbering<'_> {
     fn apply(&self, mut op: Op) -> Op {
-        op.patch(&mut InProgram(self));
+        op.patch(&mut ProgramPatch(self));
         op
     }
 }
 
 /// Gives a unit's words their numbers in the program.
-struct InProgram<'a>(&'a Numbers<'a>);
+struct ProgramPatch<'a>(&'a Renumbering<'a>);
 
-impl Patch for InProgram<'_> {
+impl Patch for ProgramPatch<'_> {
     fn label(&mut self, label: &mut Label) {
-        label.0 = label.0.wrapping_add(self.0.moved);
+        label.0 = label.0.wrapping_add(self.0.word_offset);
     }
 
     fn constant(&mut self, pool: &mut Pool) {
@@ -153,7 +153,7 @@ impl Patch for InProgram<'_> {
 }
 
 /// Converts words of an object file, whose first words are not the unit's, and resolves the names in them.
-struct FromFile<'a> {
+struct ObjectFilePatch<'a> {
     head: u32,
     pool: &'a [u64],
     signatures: &'a [Signature],
@@ -161,7 +161,7 @@ struct FromFile<'a> {
     is_wrong: bool,
 }
 
-impl Patch for FromFile<'_> {
+impl Patch for ObjectFilePatch<'_> {
     fn label(&mut self, label: &mut Label) {
         match label.0.checked_sub(self.head) {
             Some(word) => label.0 = word,
@@ -201,7 +201,7 @@ fn decode(word: [u8; WORD], head: u32, pool: &[u64], signatures: &[Signature]) -
     if matches!(op, Op::Program { .. } | Op::Sig { .. } | Op::Call { .. }) {
         return None;
     }
-    let mut file = FromFile { head, pool, signatures, is_wrong: false };
+    let mut file = ObjectFilePatch { head, pool, signatures, is_wrong: false };
     op.patch(&mut file);
     (!file.is_wrong).then_some(op)
 }

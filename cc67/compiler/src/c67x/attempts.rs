@@ -5,10 +5,10 @@
 
 use super::allocate::{self, Assignment};
 use super::code::Code;
-use super::expand::{self, Back, TooLarge};
+use super::expand::{self, ReturnAddress, TooLarge};
 use super::memo::Memo;
-use super::modulo::Work;
-use super::packets::Scheduled;
+use super::modulo::WorkBudget;
+use super::packets::ScheduledRegion;
 use super::schedule::Order;
 use super::sides::{self, Policy};
 use super::{counters, late, pipeline, refine, unroll};
@@ -25,7 +25,7 @@ const ATTEMPT: u32 = 400;
 
 /// A function in packets.
 pub(super) struct Attempt {
-    pub(super) regions: Vec<Scheduled>,
+    pub(super) regions: Vec<ScheduledRegion>,
     pub(super) code: Code,
     /// Bytes of its frame.
     pub(super) frame: u32,
@@ -57,7 +57,7 @@ impl Attempt {
 pub(super) fn best(ir: &Function, code: Code, level: Level) -> Result<Attempt, TooLarge> {
     let insts = code.blocks.iter().map(|block| block.insts.len()).sum::<usize>();
     let insts = u32::try_from(insts).unwrap_or(u32::MAX);
-    let work = Work(WORK.saturating_add(insts.saturating_mul(WORK_PER_INST)));
+    let work = WorkBudget(WORK.saturating_add(insts.saturating_mul(WORK_PER_INST)));
     let mut attempts = Attempts { ir, level, memo: Memo::default(), work, insts };
     if level == Level::Fast { attempts.fastest(code) } else { attempts.smallest(code) }
 }
@@ -68,14 +68,14 @@ struct Attempts<'a> {
     level: Level,
     memo: Memo,
     /// The work that is left for all attempts.
-    work: Work,
+    work: WorkBudget,
     /// Number of instructions of the function.
     insts: u32,
 }
 
 /// A function with physical registers for its virtual registers.
 #[derive(Clone)]
-struct Assigned {
+struct AllocatedFunction {
     code: Code,
     assignment: Assignment,
 }
@@ -85,17 +85,18 @@ impl Attempts<'_> {
     fn smallest(&mut self, code: Code) -> Result<Attempt, TooLarge> {
         let has_calls = !code.calls.is_empty();
         let assigned = self.assign(code, Policy::USUAL)?;
-        let frame = self.schedule(assigned.clone(), Back::Frame);
+        let frame = self.schedule(assigned.clone(), ReturnAddress::Frame);
         if self.level == Level::None || !has_calls {
             return frame;
         }
-        let register = self.schedule(assigned, Back::Register)?;
+        let register = self.schedule(assigned, ReturnAddress::Register)?;
         frame.map(|frame| if register.words() <= frame.words() { register } else { frame })
     }
 
     /// The fastest of some ways to unroll loops and to share registers between the sides.
     fn fastest(&mut self, code: Code) -> Result<Attempt, TooLarge> {
-        let has_loop = (0..).zip(&code.blocks).any(|(own, block)| block.end.targets().any(|to| to == own));
+        let has_loop =
+            (0..).zip(&code.blocks).any(|(own, block)| block.terminator.targets().any(|to| to == own));
         let (mut best, count) = self.with_unrolling(&code, 0, Policy::USUAL);
         let mut skipped = 0;
         for index in 0..count.min(MOST_TRIED) {
@@ -137,23 +138,24 @@ impl Attempts<'_> {
     ) -> (Result<Attempt, TooLarge>, u32) {
         let mut code = code.clone();
         let count = unroll::run(&mut code, skipped);
-        let attempt = self.assign(code, policy).and_then(|assigned| self.schedule(assigned, Back::Register));
+        let attempt =
+            self.assign(code, policy).and_then(|assigned| self.schedule(assigned, ReturnAddress::Register));
         (attempt, count)
     }
 
     /// Replaces virtual registers by those of the processor.
-    fn assign(&self, mut code: Code, policy: Policy) -> Result<Assigned, TooLarge> {
+    fn assign(&self, mut code: Code, policy: Policy) -> Result<AllocatedFunction, TooLarge> {
         if self.level != Level::None {
             counters::run(&mut code);
         }
         sides::assign(&mut code, policy);
         let assignment = allocate::allocate(&mut code, self.level).ok_or(TooLarge::Code)?;
-        Ok(Assigned { code, assignment })
+        Ok(AllocatedFunction { code, assignment })
     }
 
     /// Takes instructions over the registers of the processor through the stages that follow.
-    fn schedule(&mut self, assigned: Assigned, back: Back) -> Result<Attempt, TooLarge> {
-        let Assigned { code, assignment } = assigned;
+    fn schedule(&mut self, assigned: AllocatedFunction, back: ReturnAddress) -> Result<Attempt, TooLarge> {
+        let AllocatedFunction { code, assignment } = assigned;
         let expanded = expand::expand(self.ir, &code, &assignment, back)?;
         let order = if self.level == Level::None { Order::Source } else { Order::Early };
         let mut regions = if self.level == Level::Fast {

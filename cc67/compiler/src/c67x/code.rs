@@ -19,7 +19,7 @@ entity_impl!(VReg, "r");
 
 /// The properties of a virtual register.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Info {
+pub(super) struct VRegInfo {
     /// A pair of registers.
     pub(super) is_pair: bool,
     /// Its register file, once that is decided.
@@ -232,7 +232,7 @@ pub(super) struct Call {
 
 /// The terminator of a block.
 #[derive(Clone, Debug)]
-pub(super) enum End {
+pub(super) enum Terminator {
     /// Continues at a block.
     Jump(u32),
     /// Continues at `then` if the register is not 0 (`negated`: if it is 0), otherwise at `otherwise`.
@@ -245,7 +245,7 @@ pub(super) enum End {
     Unreachable,
 }
 
-impl End {
+impl Terminator {
     /// The blocks at which it may continue.
     pub(super) fn targets(&self) -> impl Iterator<Item = u32> + '_ {
         let (two, many): ([Option<u32>; 2], &[u32]) = match self {
@@ -280,7 +280,7 @@ impl End {
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     pub(super) insts: Vec<Inst>,
-    pub(super) end: End,
+    pub(super) terminator: Terminator,
     /// Number of loops around it.
     pub(super) depth: u32,
     /// Number of iterations of the source's loop that it executes.
@@ -300,7 +300,7 @@ impl Block {
 pub(super) struct Code {
     /// In the order of the code; a block's number is its place.
     pub(super) blocks: Vec<Block>,
-    pub(super) regs: PrimaryMap<VReg, Info>,
+    pub(super) regs: PrimaryMap<VReg, VRegInfo>,
     pub(super) calls: Vec<Call>,
     /// The parameters and their registers at entry (for a pair, the even register).
     pub(super) params: Vec<(VReg, Reg)>,
@@ -314,7 +314,7 @@ pub(super) struct Code {
 
 impl Code {
     /// Creates a register with the properties `info`.
-    pub(super) fn reg(&mut self, info: Info) -> VReg {
+    pub(super) fn reg(&mut self, info: VRegInfo) -> VReg {
         self.regs.push(info)
     }
 }

@@ -139,7 +139,7 @@ fn remove_unread(code: &mut Code) {
             for inst in &block.insts {
                 visit_sources(inst, |reg| is_read[reg] = true);
             }
-            if let Some(reg) = block.end.read() {
+            if let Some(reg) = block.terminator.read() {
                 is_read[reg] = true;
             }
         }

@@ -6,9 +6,9 @@
 
 use cranelift_entity::SecondaryMap;
 
-use super::code::{Arg, Code, End, VReg};
+use super::code::{Arg, Code, Terminator, VReg};
 use super::forms::Kind;
-use super::predicate::Mentioned;
+use super::predicate::UserBlocks;
 
 /// The most registers that are tested inside an iteration.
 const TESTED: usize = 2;
@@ -22,7 +22,7 @@ pub(super) fn run(code: &mut Code) {
         code.regs[count].is_condition = true;
         let block = &mut code.blocks[number];
         block.insts.remove(at);
-        if let Some(tested) = block.end.read_mut() {
+        if let Some(tested) = block.terminator.read_mut() {
             *tested = count;
         }
     }
@@ -31,7 +31,7 @@ pub(super) fn run(code: &mut Code) {
 /// The copy that is tested by the branch back to a block, and its source, if the source can be tested instead.
 fn copied(code: &Code, readers: &Readers, number: usize) -> Option<(usize, VReg)> {
     let block = &code.blocks[number];
-    let End::Branch { condition, then, otherwise, .. } = block.end else { return None };
+    let Terminator::Branch { condition, then, otherwise, .. } = block.terminator else { return None };
     if then != number as u32 && otherwise != number as u32 {
         return None;
     }
@@ -54,19 +54,19 @@ fn copied(code: &Code, readers: &Readers, number: usize) -> Option<(usize, VReg)
 
 /// The blocks that read each register, and the registers that are arguments of calls.
 struct Readers {
-    blocks: SecondaryMap<VReg, Mentioned>,
+    blocks: SecondaryMap<VReg, UserBlocks>,
     is_argument: SecondaryMap<VReg, bool>,
 }
 
 impl Readers {
     fn new(code: &Code) -> Self {
-        let mut blocks: SecondaryMap<VReg, Mentioned> = SecondaryMap::with_capacity(code.regs.len());
+        let mut blocks: SecondaryMap<VReg, UserBlocks> = SecondaryMap::with_capacity(code.regs.len());
         blocks.resize(code.regs.len());
         let mut is_argument = SecondaryMap::with_capacity(code.regs.len());
         is_argument.resize(code.regs.len());
         for (number, block) in (0..).zip(&code.blocks) {
             block.insts.iter().for_each(|inst| inst.visit_reads(|reg| blocks[reg].add(number)));
-            if let Some(reg) = block.end.read() {
+            if let Some(reg) = block.terminator.read() {
                 blocks[reg].add(number);
             }
         }

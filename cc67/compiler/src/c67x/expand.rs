@@ -8,11 +8,11 @@ use cranelift_entity::SecondaryMap;
 
 use super::abi;
 use super::allocate::Assignment;
-use super::code::{Arg, Base, Call, CallTarget, Code, End, Inst, MemoryPlace, Value};
+use super::code::{Arg, Base, Call, CallTarget, Code, Inst, MemoryPlace, Terminator, Value};
 use super::forms::Kind;
 use super::frame::{self, Frame};
 use super::moves;
-use super::step::{Access, Final, Finalizer, Operands, Step, pred, step};
+use super::step::{Access, Finalizer, Operands, PhysicalOperand, Step, pred, step};
 use crate::ir::function::{Function, table};
 use crate::ir::inst::SlotId;
 use crate::source::Span;
@@ -27,7 +27,7 @@ pub(super) struct Region {
     pub(super) branches: Vec<Step>,
     /// The steps in the delay slots of the branch, in this order: they change the register that it reads.
     pub(super) late: Vec<Step>,
-    pub(super) beyond: Beyond,
+    pub(super) exit_registers: ExitRegisters,
     /// The estimated frequency of its execution, including that of the code around a loop.
     pub(super) weight: f32,
     pub(super) span: Span,
@@ -36,21 +36,29 @@ pub(super) struct Region {
 impl Region {
     /// An empty region.
     pub(super) fn new(label: u32, weight: f32, span: Span) -> Self {
-        let beyond = Beyond::default();
-        Self { label, steps: Vec::new(), branches: Vec::new(), late: Vec::new(), beyond, weight, span }
+        let beyond = ExitRegisters::default();
+        Self {
+            label,
+            steps: Vec::new(),
+            branches: Vec::new(),
+            late: Vec::new(),
+            exit_registers: beyond,
+            weight,
+            span,
+        }
     }
 }
 
 /// The registers that code elsewhere reads and changes, a bit each, at the exits of the function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Beyond {
+pub(super) struct ExitRegisters {
     pub(super) reads: u64,
     pub(super) changes: u64,
 }
 
 /// A function with the registers of the processor.
 #[derive(Debug)]
-pub(super) struct Expanded {
+pub(super) struct ExpandedFunction {
     pub(super) regions: Vec<Region>,
     /// The first unused label.
     pub(super) labels: u32,
@@ -62,7 +70,7 @@ pub(super) struct Expanded {
 
 /// The location of the return address while calls change its register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Back {
+pub(super) enum ReturnAddress {
     /// In a callee-saved register, if one is free.
     Register,
     /// In the frame: an instruction less, and five cycles more.
@@ -83,15 +91,16 @@ pub(super) fn expand(
     function: &Function,
     code: &Code,
     assignment: &Assignment,
-    back: Back,
-) -> Result<Expanded, TooLarge> {
+    back: ReturnAddress,
+) -> Result<ExpandedFunction, TooLarge> {
     let calls = !code.calls.is_empty();
     let mut saved: Vec<Reg> = abi::registers(assignment.kept).collect();
     let home = back;
     let mut back = abi::LINK;
     if calls {
         // From a callee-saved register, the return address is available at once when the function ends.
-        let free = abi::registers(abi::KEPT & !assignment.kept).last().filter(|_| home == Back::Register);
+        let free =
+            abi::registers(abi::KEPT & !assignment.kept).last().filter(|_| home == ReturnAddress::Register);
         back = free.unwrap_or(abi::LINK);
         saved.push(back);
     }
@@ -114,7 +123,7 @@ pub(super) fn expand(
         return Err(TooLarge::Code);
     }
     let Expander { regions, returns: labels, late, .. } = expander;
-    Ok(Expanded { regions, labels, late, frame: frame.size })
+    Ok(ExpandedFunction { regions, labels, late, frame: frame.size })
 }
 
 /// The objects of the frame whose addresses are taken.
@@ -164,7 +173,7 @@ impl Expander<'_> {
                 self.inst(inst);
             }
             self.region.span = block.span;
-            self.end(&block.end, number + 1);
+            self.end(&block.terminator, number + 1);
         }
     }
 
@@ -185,14 +194,14 @@ impl Expander<'_> {
         }
     }
 
-    fn plain(&mut self, kind: Kind, dst: Final, src1: Final, src2: Final) {
+    fn plain(&mut self, kind: Kind, dst: PhysicalOperand, src1: PhysicalOperand, src2: PhysicalOperand) {
         let operands = Operands { dst, src1, src2, mem: None, field: (0, 0), pred: Pred::Always };
         self.emit(kind, &operands, Access::None);
     }
 
     fn move_word(&mut self, to: Reg, from: Reg) {
-        let zero = Final::Value(Value::Number(0));
-        self.plain(Kind::Move, Final::Reg(to), zero, Final::Reg(from));
+        let zero = PhysicalOperand::Value(Value::Number(0));
+        self.plain(Kind::Move, PhysicalOperand::Reg(to), zero, PhysicalOperand::Reg(from));
     }
 
     /// A word of the frame that holds a saved register.
@@ -200,17 +209,26 @@ impl Expander<'_> {
         let at = (self.frame.saved + 4 * index).cast_signed();
         let place = MemoryPlace::new(Base::Stack, at);
         let Some(mem) = self.finalizer.mem(place, 4) else { return };
-        let (dst, src2) =
-            if kind.is_store() { (Final::None, Final::Reg(reg)) } else { (Final::Reg(reg), Final::None) };
-        let operands =
-            Operands { dst, src1: Final::None, src2, mem: Some(mem), field: (0, 0), pred: Pred::Always };
+        let (dst, src2) = if kind.is_store() {
+            (PhysicalOperand::None, PhysicalOperand::Reg(reg))
+        } else {
+            (PhysicalOperand::Reg(reg), PhysicalOperand::None)
+        };
+        let operands = Operands {
+            dst,
+            src1: PhysicalOperand::None,
+            src2,
+            mem: Some(mem),
+            field: (0, 0),
+            pred: Pred::Always,
+        };
         self.emit(kind, &operands, Access::Own { is_store: kind.is_store(), at, size: 4 });
     }
 
     /// `B15 += bytes`
     fn move_stack(&mut self, bytes: i32) {
-        let stack = Final::Reg(abi::STACK);
-        self.plain(Kind::Addk, stack, Final::Value(Value::Number(bytes)), Final::None);
+        let stack = PhysicalOperand::Reg(abi::STACK);
+        self.plain(Kind::Addk, stack, PhysicalOperand::Value(Value::Number(bytes)), PhysicalOperand::None);
     }
 
     /// Emits the steps before the first block.
@@ -261,8 +279,13 @@ impl Expander<'_> {
             (Kind::FrameAddress, Some(place)) => {
                 let dst = self.finalizer.arg(inst.dst);
                 let offset = self.finalizer.offset(place);
-                self.plain(Kind::Mvk, dst, Final::Value(Value::Number(offset)), Final::None);
-                self.plain(Kind::Add, dst, dst, Final::Reg(abi::STACK));
+                self.plain(
+                    Kind::Mvk,
+                    dst,
+                    PhysicalOperand::Value(Value::Number(offset)),
+                    PhysicalOperand::None,
+                );
+                self.plain(Kind::Add, dst, dst, PhysicalOperand::Reg(abi::STACK));
             }
             (Kind::LoadPair, Some(place)) if !self.reaches_pair(place) => self.load_halves(inst, place),
             _ => self.ordinary(inst),
@@ -314,7 +337,7 @@ impl Expander<'_> {
             matches!(inst.src1, Arg::Value(Value::Number(number)) if !(-16..=15).contains(&number));
         if is_large && inst.kind == Kind::Add && step(Kind::Add, &operands, access, inst.span).is_none() {
             // The register does not count on any more, as it did where this was selected.
-            self.emit(Kind::Mvk, &Operands { src2: Final::None, ..operands }, Access::None);
+            self.emit(Kind::Mvk, &Operands { src2: PhysicalOperand::None, ..operands }, Access::None);
             return self.emit(Kind::Add, &Operands { src1: dst, ..operands }, Access::None);
         }
         self.emit(inst.kind, &operands, access);
@@ -328,18 +351,18 @@ impl Expander<'_> {
         self.moves(&list);
         let label = self.returns;
         self.returns += 1;
-        let link = Final::Reg(abi::LINK);
-        let back = Final::Value(Value::Block(label));
-        self.plain(Kind::Mvk, link, back, Final::None);
-        self.plain(Kind::Mvkh, link, back, Final::None);
+        let link = PhysicalOperand::Reg(abi::LINK);
+        let back = PhysicalOperand::Value(Value::Block(label));
+        self.plain(Kind::Mvk, link, back, PhysicalOperand::None);
+        self.plain(Kind::Mvkh, link, back, PhysicalOperand::None);
         let target = match call.target {
-            CallTarget::Symbol(symbol) => Final::Value(Value::Symbol(symbol, 0)),
-            CallTarget::Register => Final::Reg(abi::TARGET),
+            CallTarget::Symbol(symbol) => PhysicalOperand::Value(Value::Symbol(symbol, 0)),
+            CallTarget::Register => PhysicalOperand::Reg(abi::TARGET),
         };
         let branch = self.branch(target, Pred::Always);
         let passed = call.arguments.iter();
         let reads = passed.fold(0, |set, (reg, at)| set | self.whole(*reg, *at));
-        self.region.beyond = Beyond { reads, changes: call.changes };
+        self.region.exit_registers = ExitRegisters { reads, changes: call.changes };
         self.close(branch.into_iter().collect());
         self.region.label = label;
         if call.is_late {
@@ -353,14 +376,24 @@ impl Expander<'_> {
         }
     }
 
-    fn branch(&mut self, target: Final, pred: Pred) -> Option<Step> {
+    fn branch(&mut self, target: PhysicalOperand, pred: Pred) -> Option<Step> {
         let operands = match target {
-            Final::Value(_) => {
-                Operands { dst: Final::None, src1: target, src2: Final::None, mem: None, field: (0, 0), pred }
-            }
-            _ => {
-                Operands { dst: Final::None, src1: Final::None, src2: target, mem: None, field: (0, 0), pred }
-            }
+            PhysicalOperand::Value(_) => Operands {
+                dst: PhysicalOperand::None,
+                src1: target,
+                src2: PhysicalOperand::None,
+                mem: None,
+                field: (0, 0),
+                pred,
+            },
+            _ => Operands {
+                dst: PhysicalOperand::None,
+                src1: PhysicalOperand::None,
+                src2: target,
+                mem: None,
+                field: (0, 0),
+                pred,
+            },
         };
         let step = step(Kind::Branch, &operands, Access::None, self.region.span);
         self.is_wrong |= step.is_none();
@@ -368,14 +401,14 @@ impl Expander<'_> {
     }
 
     fn jump(&mut self, block: u32, pred: Pred) -> Option<Step> {
-        self.branch(Final::Value(Value::Block(block)), pred)
+        self.branch(PhysicalOperand::Value(Value::Block(block)), pred)
     }
 
-    fn end(&mut self, end: &End, next: u32) {
+    fn end(&mut self, end: &Terminator, next: u32) {
         let branches = match *end {
-            End::Jump(to) if to == next => Vec::new(),
-            End::Jump(to) => self.jump(to, Pred::Always).into_iter().collect(),
-            End::Branch { condition, negated, then, otherwise } => {
+            Terminator::Jump(to) if to == next => Vec::new(),
+            Terminator::Jump(to) => self.jump(to, Pred::Always).into_iter().collect(),
+            Terminator::Branch { condition, negated, then, otherwise } => {
                 let at = self.finalizer.assignment.of(condition);
                 let (Some(yes), Some(no)) = (pred(at, negated), pred(at, !negated)) else {
                     self.is_wrong = true;
@@ -390,23 +423,23 @@ impl Expander<'_> {
                 }
                 branches
             }
-            End::Table { address, .. } => {
-                self.region.beyond.reads = !0;
+            Terminator::Table { address, .. } => {
+                self.region.exit_registers.reads = !0;
                 let at = self.finalizer.assignment.of(address);
-                self.branch(Final::Reg(at), Pred::Always).into_iter().collect()
+                self.branch(PhysicalOperand::Reg(at), Pred::Always).into_iter().collect()
             }
-            End::Return(value) => self.leave(value),
+            Terminator::Return(value) => self.leave(value),
             // Execution that gets here by mistake leaves the function.
-            End::Unreachable => self.leave(None),
+            Terminator::Unreachable => self.leave(None),
         };
         self.close(branches);
     }
 
     /// The end of the function.
     fn leave(&mut self, value: Option<super::code::VReg>) -> Vec<Step> {
-        self.region.beyond.reads = abi::KEPT | abi::bit(abi::STACK);
+        self.region.exit_registers.reads = abi::KEPT | abi::bit(abi::STACK);
         if let Some(value) = value {
-            self.region.beyond.reads |= self.whole(value, abi::RESULT);
+            self.region.exit_registers.reads |= self.whole(value, abi::RESULT);
             let mut list = Vec::new();
             let from = self.finalizer.assignment.of(value);
             self.words(abi::RESULT, from, self.code.regs[value].is_pair, &mut list);
@@ -426,6 +459,6 @@ impl Expander<'_> {
             let stack = self.region.steps.pop();
             self.region.late = [Some(load), stack].into_iter().flatten().collect();
         }
-        self.branch(Final::Reg(self.back), Pred::Always).into_iter().collect()
+        self.branch(PhysicalOperand::Reg(self.back), Pred::Always).into_iter().collect()
     }
 }

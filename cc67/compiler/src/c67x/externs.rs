@@ -9,7 +9,7 @@ use crate::typed::SymbolId;
 
 /// The facts of the unit about a symbol.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct About {
+pub(crate) struct SymbolFacts {
     pub(crate) align: u32,
     pub(crate) is_variadic: bool,
     pub(crate) is_external: bool,
@@ -39,8 +39,8 @@ pub(crate) struct Externs {
 
 impl Externs {
     /// Takes a symbol of the unit, in the order of their numbers.
-    pub(crate) fn push(&mut self, name: &str, about: About) {
-        let About { align, is_variadic, is_external, is_defined } = about;
+    pub(crate) fn push(&mut self, name: &str, about: SymbolFacts) {
+        let SymbolFacts { align, is_variadic, is_external, is_defined } = about;
         let id = self.aligns.push(align);
         self.variadic[id] = is_variadic;
         let firmware = in_firmware(name).filter(|_| is_external && !is_defined);

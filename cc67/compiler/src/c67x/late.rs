@@ -5,10 +5,10 @@
 //! value of the register would be undefined: such a packet is delayed by a cycle.
 
 use super::abi;
-use super::packets::Scheduled;
+use super::packets::ScheduledRegion;
 
 /// Delays the regions with the given labels, after such calls, if they begin with a result in the register.
-pub(super) fn run(regions: &mut [Scheduled], late: &[u32]) {
+pub(super) fn run(regions: &mut [ScheduledRegion], late: &[u32]) {
     for index in 0..regions.len() {
         if late.contains(&regions[index].label) && meets(&regions[index..]) {
             let region = &mut regions[index];
@@ -19,7 +19,7 @@ pub(super) fn run(regions: &mut [Scheduled], late: &[u32]) {
 }
 
 /// Reports whether the first cycle writes A7: in the first region, or in the following ones if it falls through.
-fn meets(regions: &[Scheduled]) -> bool {
+fn meets(regions: &[ScheduledRegion]) -> bool {
     let Some(first) = regions.iter().find(|region| region.cycles > 0) else { return false };
     let issued = first.insts.iter().take_while(|issued| issued.cycle == 0);
     issued.flat_map(|issued| issued.inst.writes()).any(|write| write.reg == abi::LATE && write.stage == 1)

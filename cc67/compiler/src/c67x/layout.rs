@@ -6,14 +6,14 @@
 use c67x::{FETCH_PACKET, Inst, Op, Operand, Side};
 
 use super::code::Value;
-use super::packets::{FETCH, Issued, LONGEST, Scheduled};
+use super::packets::{FETCH, IssuedInst, LONGEST, ScheduledRegion};
 use super::text::Fixup;
 use crate::relocation::FixupKind;
 use crate::source::Span;
 
 /// A function in words.
 #[derive(Debug, Default)]
-pub(super) struct Laid {
+pub(super) struct LaidOutFunction {
     pub(super) words: Vec<u32>,
     /// Number of words of code; tables of addresses follow.
     pub(super) code: u32,
@@ -25,12 +25,17 @@ pub(super) struct Laid {
 }
 
 /// Lays out the regions in the order of the code; labels from `blocks` on belong to return points.
-pub(super) fn lay_out(regions: &[Scheduled], tables: &[Vec<u32>], blocks: u32, span: Span) -> Laid {
+pub(super) fn lay_out(
+    regions: &[ScheduledRegion],
+    tables: &[Vec<u32>],
+    blocks: u32,
+    span: Span,
+) -> LaidOutFunction {
     let labels = regions.iter().map(|region| region.label).max().unwrap_or(0) + 1;
     let mut targets = tables.concat();
     targets.sort_unstable();
     let mut layout = Layout {
-        laid: Laid { spans: vec![(0, span)], ..Laid::default() },
+        function: LaidOutFunction { spans: vec![(0, span)], ..LaidOutFunction::default() },
         labels: vec![0; labels as usize],
         pending: Vec::new(),
         open: Vec::new(),
@@ -43,11 +48,11 @@ pub(super) fn lay_out(regions: &[Scheduled], tables: &[Vec<u32>], blocks: u32, s
     }
     layout.tables(tables);
     layout.complete();
-    layout.laid
+    layout.function
 }
 
 struct Layout {
-    laid: Laid,
+    function: LaidOutFunction,
     /// The word of each label.
     labels: Vec<u32>,
     /// The labels of empty regions: they are where the next packet begins.
@@ -62,10 +67,10 @@ struct Layout {
 
 impl Layout {
     fn at(&self) -> u32 {
-        self.laid.words.len() as u32
+        self.function.words.len() as u32
     }
 
-    fn region(&mut self, region: &Scheduled, blocks: u32) {
+    fn region(&mut self, region: &ScheduledRegion, blocks: u32) {
         let mut label = Some(region.label);
         let mut cycle = 0;
         let mut index = 0;
@@ -77,12 +82,12 @@ impl Layout {
                 let next = region.insts.get(index).map_or(region.cycles, |issued| issued.cycle);
                 let gap = (next - cycle).min(LONGEST);
                 self.begin(1, &mut label, blocks, region.span);
-                self.laid.words.push(Inst::nop(gap).encode(false));
+                self.function.words.push(Inst::nop(gap).encode(false));
                 cycle += gap;
                 continue;
             }
             // A call is attributed to its own line, whatever else is in its packet: so it comes first.
-            let mut packet: Vec<&Issued> = packet.iter().collect();
+            let mut packet: Vec<&IssuedInst> = packet.iter().collect();
             packet.sort_by_key(|issued| issued.inst.branch().is_none());
             let first = packet.first().map_or(region.span, |issued| issued.span);
             self.begin(count as u32, &mut label, blocks, first);
@@ -109,7 +114,7 @@ impl Layout {
         for number in pending {
             self.labels[number as usize] = at;
             if number >= blocks || at == 0 || self.targets.binary_search(&number).is_ok() {
-                self.laid.entries.push(at);
+                self.function.entries.push(at);
             }
         }
         self.mark(at, span);
@@ -117,10 +122,10 @@ impl Layout {
 
     /// Sets the source position of the words from `at` on.
     fn mark(&mut self, at: u32, span: Span) {
-        if self.laid.spans.last().is_none_or(|(_, last)| *last != span) {
-            match self.laid.spans.last_mut() {
+        if self.function.spans.last().is_none_or(|(_, last)| *last != span) {
+            match self.function.spans.last_mut() {
                 Some((word, last)) if *word == at => *last = span,
-                _ => self.laid.spans.push((at, span)),
+                _ => self.function.spans.push((at, span)),
             }
         }
     }
@@ -128,14 +133,14 @@ impl Layout {
     /// Fills the fetch packet with `NOP`s that belong to the last packet.
     fn pad(&mut self) {
         while !self.at().is_multiple_of(FETCH) {
-            if let Some(word) = self.laid.words.last_mut() {
+            if let Some(word) = self.function.words.last_mut() {
                 *word |= c67x::PARALLEL;
             }
-            self.laid.words.push(Inst::nop(1).encode(false));
+            self.function.words.push(Inst::nop(1).encode(false));
         }
     }
 
-    fn packet(&mut self, packet: &[&Issued]) {
+    fn packet(&mut self, packet: &[&IssuedInst]) {
         let last = packet.len() - 1;
         for (index, issued) in packet.iter().enumerate() {
             if let Some(value) = issued.value.filter(|value| !matches!(value, Value::Number(_))) {
@@ -145,24 +150,24 @@ impl Layout {
             if index > 0 && issued.inst.mem().is_some() {
                 self.mark(self.at(), issued.span);
             }
-            self.laid.words.push(issued.inst.encode(index < last));
+            self.function.words.push(issued.inst.encode(index < last));
         }
     }
 
     /// Puts the tables of addresses after the code.
     fn tables(&mut self, tables: &[Vec<u32>]) {
-        self.laid.code = self.at();
+        self.function.code = self.at();
         for table in tables {
             self.tables.push(self.at());
             for label in table {
                 let at = self.at();
                 let offset = self.labels[*label as usize] * 4;
-                self.laid.fixups.push(Fixup {
+                self.function.fixups.push(Fixup {
                     word: at,
                     kind: FixupKind::Own(offset.cast_signed()),
                     symbol: None,
                 });
-                self.laid.words.push(0);
+                self.function.words.push(0);
             }
         }
     }
@@ -170,7 +175,7 @@ impl Layout {
     /// Completes the words that depend on labels; the rest is left to the linker.
     fn complete(&mut self) {
         for (word, value) in std::mem::take(&mut self.open) {
-            let Ok(inst) = Inst::decode(self.laid.words[word as usize]) else { continue };
+            let Ok(inst) = Inst::decode(self.function.words[word as usize]) else { continue };
             let own = match value {
                 Value::Block(label) => Some(self.labels[label as usize]),
                 Value::Table(table) => Some(self.tables[table as usize]),
@@ -191,17 +196,17 @@ impl Layout {
             } else {
                 FixupKind::Near
             };
-            self.laid.fixups.push(Fixup { word, kind, symbol });
+            self.function.fixups.push(Fixup { word, kind, symbol });
         }
-        self.laid.fixups.sort_by_key(|fixup| fixup.word);
+        self.function.fixups.sort_by_key(|fixup| fixup.word);
     }
 
     fn displace(&mut self, word: u32, inst: Inst, target: u32) {
         let bytes = (target * 4).wrapping_sub(word / FETCH * FETCH_PACKET).cast_signed();
         let side = inst.unit().map_or(Side::B, |unit| unit.side);
-        let parallel = self.laid.words[word as usize] & c67x::PARALLEL != 0;
+        let parallel = self.function.words[word as usize] & c67x::PARALLEL != 0;
         if let Ok(inst) = Inst::new(Op::BDisp, side, inst.pred(), &[Operand::Target(bytes)]) {
-            self.laid.words[word as usize] = inst.encode(parallel);
+            self.function.words[word as usize] = inst.encode(parallel);
         }
     }
 }

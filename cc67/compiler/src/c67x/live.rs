@@ -43,13 +43,13 @@ pub(super) fn analyze(code: &Code) -> Liveness {
     let (bounds, calls) = scan.mentions(code);
     scan.flow(code, &bounds);
     let loops = (0..).zip(&code.blocks).zip(&bounds);
-    let loops = loops.filter(|((number, block), _)| block.end.targets().any(|to| to == *number));
+    let loops = loops.filter(|((number, block), _)| block.terminator.targets().any(|to| to == *number));
     let loops = loops.map(|(_, bounds)| *bounds).collect();
     Liveness { intervals: scan.intervals, loops, calls }
 }
 
 /// Positions, two and two.
-type Pairs = Vec<(u32, u32)>;
+type PositionPairs = Vec<(u32, u32)>;
 
 struct Scan {
     intervals: SecondaryMap<VReg, Interval>,
@@ -62,7 +62,7 @@ struct Scan {
 }
 
 /// The registers that a block reads before it writes them, and those that it writes first.
-struct Sets {
+struct UseDefSets {
     read: Vec<u64>,
     written: Vec<u64>,
 }
@@ -86,7 +86,7 @@ impl Scan {
     }
 
     /// Walks the code; the positions of each block's beginning and end, and of the calls.
-    fn mentions(&mut self, code: &Code) -> (Pairs, Pairs) {
+    fn mentions(&mut self, code: &Code) -> (PositionPairs, PositionPairs) {
         let mut bounds = Vec::with_capacity(code.blocks.len());
         let mut calls = Vec::new();
         for (reg, _) in &code.params {
@@ -112,7 +112,7 @@ impl Scan {
                 }
                 at += 2;
             }
-            if let Some(reg) = block.end.read() {
+            if let Some(reg) = block.terminator.read() {
                 self.mention(reg, at, number, weight, true);
             }
             at += 2;
@@ -127,7 +127,7 @@ impl Scan {
             return;
         }
         let words = self.globals.len().div_ceil(64);
-        let sets: Vec<Sets> = code.blocks.iter().map(|block| self.sets(code, block, words)).collect();
+        let sets: Vec<UseDefSets> = code.blocks.iter().map(|block| self.sets(code, block, words)).collect();
         let mut entering = vec![0_u64; words * code.blocks.len()];
         let mut leaving = vec![0_u64; words];
         let mut is_changed = true;
@@ -163,9 +163,9 @@ impl Scan {
         }
     }
 
-    fn sets(&self, code: &Code, block: &super::code::Block, words: usize) -> Sets {
-        let mut sets = Sets { read: vec![0; words], written: vec![0; words] };
-        let read = |sets: &mut Sets, reg: VReg| {
+    fn sets(&self, code: &Code, block: &super::code::Block, words: usize) -> UseDefSets {
+        let mut sets = UseDefSets { read: vec![0; words], written: vec![0; words] };
+        let read = |sets: &mut UseDefSets, reg: VReg| {
             if let Some((word, bit)) = self.bit(reg)
                 && sets.written[word] & bit == 0
             {
@@ -185,7 +185,7 @@ impl Scan {
                 sets.written[word] |= bit;
             }
         }
-        if let Some(reg) = block.end.read() {
+        if let Some(reg) = block.terminator.read() {
             read(&mut sets, reg);
         }
         sets
@@ -200,7 +200,7 @@ impl Scan {
 /// Computes the registers that are live at the end of a block.
 fn leave(leaving: &mut [u64], entering: &[u64], block: &super::code::Block, words: usize) {
     leaving.fill(0);
-    for target in block.end.targets() {
+    for target in block.terminator.targets() {
         let start = target as usize * words;
         for (own, next) in leaving.iter_mut().zip(&entering[start..start + words]) {
             *own |= next;
@@ -209,7 +209,7 @@ fn leave(leaving: &mut [u64], entering: &[u64], block: &super::code::Block, word
 }
 
 fn loops_to_itself(code: &Code) -> bool {
-    code.blocks.iter().any(|block| block.end.targets().next().is_some())
+    code.blocks.iter().any(|block| block.terminator.targets().next().is_some())
 }
 
 /// The registers in the order in which their intervals begin.

@@ -4,8 +4,8 @@
 //! region that equals an earlier one gets the same packets without a new search.
 
 use super::expand::Region;
-use super::modulo::{Exceeded, Overlap};
-use super::packets::{FETCH, Scheduled};
+use super::modulo::{BudgetExceeded, Overlap};
+use super::packets::{FETCH, ScheduledRegion};
 use super::schedule::{self, Order};
 
 /// The regions of all attempts at a function.
@@ -20,17 +20,17 @@ pub(super) struct Memo {
 pub(super) struct KnownRegion {
     pub(super) region: Region,
     /// Its packets, by its starting word within a fetch packet.
-    plain: Vec<(u32, Scheduled)>,
+    plain: Vec<(u32, ScheduledRegion)>,
     /// The overlap of its iterations, if it is a loop.
-    plans: Vec<(Question, SearchedOverlap)>,
+    plans: Vec<(OverlapKey, SearchedOverlap)>,
 }
 
 /// The result of a search for an overlap.
-pub(super) type SearchedOverlap = Result<Option<Overlap>, Exceeded>;
+pub(super) type SearchedOverlap = Result<Option<Overlap>, BudgetExceeded>;
 
 /// The facts, besides the region, on which the overlap depends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Question {
+pub(super) struct OverlapKey {
     /// The registers that are read after the loop, a bit each.
     pub(super) read_after: u64,
     /// The cycles of an iteration that does not overlap.
@@ -55,7 +55,7 @@ impl Memo {
 
 impl KnownRegion {
     /// The packets of the region if it begins at the word `at`.
-    pub(super) fn plain(&mut self, order: Order, at: u32) -> Scheduled {
+    pub(super) fn plain(&mut self, order: Order, at: u32) -> ScheduledRegion {
         let at = at % FETCH;
         if let Some((_, plain)) = self.plain.iter().find(|(own, _)| *own == at) {
             return plain.clone();
@@ -66,12 +66,12 @@ impl KnownRegion {
     }
 
     /// The overlap found by an earlier attempt.
-    pub(super) fn plan(&self, question: Question) -> Option<&SearchedOverlap> {
+    pub(super) fn plan(&self, question: OverlapKey) -> Option<&SearchedOverlap> {
         self.plans.iter().find(|(own, _)| *own == question).map(|(_, plan)| plan)
     }
 
     /// Keeps an overlap for later attempts.
-    pub(super) fn keep(&mut self, question: Question, plan: SearchedOverlap) {
+    pub(super) fn keep(&mut self, question: OverlapKey, plan: SearchedOverlap) {
         self.plans.push((question, plan));
     }
 }

@@ -63,7 +63,7 @@ use crate::passes::Level;
 use crate::source::Span;
 use attempts::Attempt;
 use expand::TooLarge;
-use text::Words;
+use text::MachineText;
 
 /// Writes the functions of a unit, one after another.
 #[derive(Debug)]
@@ -91,7 +91,7 @@ impl Generator {
         ir: &Function,
         signatures: &Signatures,
         name: &str,
-    ) -> Result<Words, Box<Diagnostic>> {
+    ) -> Result<MachineText, Box<Diagnostic>> {
         let context = select::Context { function: ir, signatures, externs: &mut self.externs };
         let mut code = select::select(context);
         if self.level != Level::None {
@@ -113,7 +113,7 @@ impl Generator {
         let end = self.words.len() as u32;
         let spans = laid.spans.into_iter().map(|(word, span)| (start + word, span)).collect();
         let exceeded = regions.iter().filter(|region| region.is_exceeded).map(|region| region.span).collect();
-        Ok(Words { words: start..end, fixups: laid.fixups, spans, frame, exceeded })
+        Ok(MachineText { words: start..end, fixups: laid.fixups, spans, frame, exceeded })
     }
 
     /// The words of all functions, and the names that they need in addition to those of the unit.
@@ -124,7 +124,7 @@ impl Generator {
 
 /// Checks the schedule against the rules of the `c67x` crate, which is independent of this one.
 #[cfg(debug_assertions)]
-fn verify(laid: &layout::Laid, name: &str) {
+fn verify(laid: &layout::LaidOutFunction, name: &str) {
     let code = &laid.words[..laid.code as usize];
     let Ok(packets) = c67x::schedule::packets(code) else {
         panic!("{name}: a word that is not an instruction");

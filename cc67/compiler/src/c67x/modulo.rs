@@ -49,7 +49,7 @@ impl Overlap {
 
 /// A dependence: `to` issues at least `cycles` after `from` of the iteration `distance` earlier.
 #[derive(Clone, Copy, Debug)]
-struct Wait {
+struct Dependence {
     from: usize,
     to: usize,
     cycles: i64,
@@ -63,18 +63,18 @@ struct Wait {
 /// until it is certain that the iteration is executed.
 ///
 /// # Errors
-/// [`Exceeded`] if the search takes more than [`WORK`], or more than the rest of the function's budget.
+/// [`BudgetExceeded`] if the search takes more than [`WORK`], or more than the rest of the function's budget.
 pub(super) fn search(
     steps: &[Step],
     is_certain: impl Fn(usize) -> bool,
     limit: u32,
-    whole: &mut Work,
-) -> Result<Option<Overlap>, Exceeded> {
-    let waits = Waits::new(steps);
+    whole: &mut WorkBudget,
+) -> Result<Option<Overlap>, BudgetExceeded> {
+    let waits = Dependences::new(steps);
     let is_certain: Vec<bool> = (0..steps.len()).map(is_certain).collect();
     let least = (steps.len() as u32).div_ceil(8).max(BRANCH);
     let given = WORK.min(whole.0);
-    let mut work = Work(given);
+    let mut work = WorkBudget(given);
     let found = shortest(steps, &is_certain, least..limit, &waits, &mut work);
     whole.0 -= given - work.0;
     found
@@ -85,9 +85,9 @@ fn shortest(
     steps: &[Step],
     is_certain: &[bool],
     periods: Range<u32>,
-    waits: &Waits,
-    work: &mut Work,
-) -> Result<Option<Overlap>, Exceeded> {
+    waits: &Dependences,
+    work: &mut WorkBudget,
+) -> Result<Option<Overlap>, BudgetExceeded> {
     // Waits that count everywhere lead to a place with fewer tries.
     let exposed = waits.exposed();
     let kinds = [(&exposed, false), (waits, true)];
@@ -114,35 +114,35 @@ fn shortest(
 
 /// A search that exceeded its budget.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Exceeded;
+pub(super) struct BudgetExceeded;
 
 /// The work that is left, in forms and dependences that are tested.
 #[derive(Debug)]
-pub(super) struct Work(pub(super) u32);
+pub(super) struct WorkBudget(pub(super) u32);
 
-impl Work {
+impl WorkBudget {
     /// Takes some of it.
     ///
     /// # Errors
-    /// [`Exceeded`] if less is left.
-    pub(super) fn spend(&mut self, amount: usize) -> Result<(), Exceeded> {
+    /// [`BudgetExceeded`] if less is left.
+    pub(super) fn spend(&mut self, amount: usize) -> Result<(), BudgetExceeded> {
         let left = u32::try_from(amount).ok().and_then(|amount| self.0.checked_sub(amount));
-        self.0 = left.ok_or(Exceeded)?;
+        self.0 = left.ok_or(BudgetExceeded)?;
         Ok(())
     }
 }
 
 /// The dependences within an iteration and from one to the next.
-struct Waits {
+struct Dependences {
     /// In the order of the steps that must come first.
-    all: Vec<Wait>,
+    all: Vec<Dependence>,
     /// For each step, the index of its first wait in `all`.
     starts: Vec<usize>,
     /// The waits of each step for others.
-    before: Vec<Vec<Wait>>,
+    before: Vec<Vec<Dependence>>,
 }
 
-impl Waits {
+impl Dependences {
     fn new(steps: &[Step]) -> Self {
         let count = steps.len();
         let two: Vec<Step> = steps.iter().chain(steps).cloned().collect();
@@ -153,13 +153,13 @@ impl Waits {
                 let to = edge.to as usize;
                 let distance = i64::from(to >= count);
                 let (cycles, sheltered) = (edge.cycles.into(), edge.sheltered.into());
-                all.push(Wait { from, to: to % count, cycles, distance, sheltered });
+                all.push(Dependence { from, to: to % count, cycles, distance, sheltered });
             }
         }
         Self::sorted(all, count)
     }
 
-    fn sorted(all: Vec<Wait>, count: usize) -> Self {
+    fn sorted(all: Vec<Dependence>, count: usize) -> Self {
         let starts = (0..=count).map(|step| all.partition_point(|wait| wait.from < step)).collect();
         let mut before = vec![Vec::new(); count];
         for wait in all.iter().filter(|wait| wait.to != wait.from) {
@@ -170,12 +170,12 @@ impl Waits {
 
     /// Returns the dependences for a loop in which interrupts are possible everywhere.
     fn exposed(&self) -> Self {
-        let all = self.all.iter().map(|wait| Wait { sheltered: wait.cycles, ..*wait }).collect();
+        let all = self.all.iter().map(|wait| Dependence { sheltered: wait.cycles, ..*wait }).collect();
         Self::sorted(all, self.before.len())
     }
 
     /// The dependences on a step.
-    fn after(&self, step: usize) -> &[Wait] {
+    fn after(&self, step: usize) -> &[Dependence] {
         &self.all[self.starts[step]..self.starts[step + 1]]
     }
 
@@ -220,7 +220,7 @@ impl Waits {
 
 struct Finder<'a> {
     steps: &'a [Step],
-    waits: &'a Waits,
+    waits: &'a Dependences,
     is_certain: &'a [bool],
     period: u32,
     commit: u32,
@@ -248,7 +248,7 @@ impl Slots {
 
 impl Finder<'_> {
     /// Returns a cycle for every step, or `None` if no solution is found within the search budget.
-    fn run(&self, work: &mut Work) -> Result<Option<Vec<(u32, Inst)>>, Exceeded> {
+    fn run(&self, work: &mut WorkBudget) -> Result<Option<Vec<(u32, Inst)>>, BudgetExceeded> {
         let branch = self.steps.len() - 1;
         let is_before = self.before_branch();
         let mut order: Vec<usize> = (0..branch).collect();
@@ -285,7 +285,7 @@ impl Finder<'_> {
     }
 
     /// Returns the first cycle of a step; `cycles` gives the length of each dependence.
-    fn earliest(&self, step: usize, placed: &Slots, cycles: impl Fn(&Wait) -> i64) -> u32 {
+    fn earliest(&self, step: usize, placed: &Slots, cycles: impl Fn(&Dependence) -> i64) -> u32 {
         let first = if self.is_certain[step] { self.commit * self.period } else { 0 };
         let after = self.waits.before[step].iter().filter_map(|wait| {
             let (at, _) = placed.places[wait.from]?;
@@ -295,7 +295,7 @@ impl Finder<'_> {
     }
 
     /// Reports whether a dependence is satisfied.
-    fn is_met(&self, wait: &Wait, from: u32, to: u32) -> bool {
+    fn is_met(&self, wait: &Dependence, from: u32, to: u32) -> bool {
         let to = i64::from(to) + wait.distance * i64::from(self.period);
         let apart = to - i64::from(from);
         apart >= wait.cycles || apart >= wait.sheltered && self.is_sheltered(to, -apart)
@@ -320,8 +320,8 @@ impl Finder<'_> {
         step: usize,
         placed: &mut Slots,
         tried: &mut [Option<u32>],
-        work: &mut Work,
-    ) -> Result<Option<()>, Exceeded> {
+        work: &mut WorkBudget,
+    ) -> Result<Option<()>, BudgetExceeded> {
         let earliest = self.earliest(step, placed, |wait| wait.sheltered);
         let exposed = self.earliest(step, placed, |wait| wait.cycles);
         let found = self.free(step, earliest..exposed + self.period, placed, work)?;
@@ -353,8 +353,8 @@ impl Finder<'_> {
         step: usize,
         cycles: Range<u32>,
         placed: &mut Slots,
-        work: &mut Work,
-    ) -> Result<Option<(u32, Inst)>, Exceeded> {
+        work: &mut WorkBudget,
+    ) -> Result<Option<(u32, Inst)>, BudgetExceeded> {
         let forms = &self.steps[step].forms;
         for cycle in cycles {
             work.spend(forms.len())?;

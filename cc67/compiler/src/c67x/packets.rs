@@ -13,7 +13,7 @@ pub(super) const LONGEST: u32 = 9;
 
 /// An instruction with its cycle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Issued {
+pub(super) struct IssuedInst {
     pub(super) cycle: u32,
     pub(super) inst: Inst,
     pub(super) value: Option<Value>,
@@ -22,10 +22,10 @@ pub(super) struct Issued {
 
 /// A region whose instructions have been scheduled.
 #[derive(Clone, Debug)]
-pub(super) struct Scheduled {
+pub(super) struct ScheduledRegion {
     pub(super) label: u32,
     /// Ascending by cycle.
-    pub(super) insts: Vec<Issued>,
+    pub(super) insts: Vec<IssuedInst>,
     /// Cycles of the region.
     pub(super) cycles: u32,
     /// The estimated frequency of its execution.

@@ -16,9 +16,9 @@ use super::abi;
 use super::code::Value;
 use super::expand::Region;
 use super::graph::BRANCH;
-use super::memo::{KnownRegion, Memo, Question};
-use super::modulo::{self, Exceeded, Overlap, Work};
-use super::packets::{Issued, Scheduled};
+use super::memo::{KnownRegion, Memo, OverlapKey};
+use super::modulo::{self, BudgetExceeded, Overlap, WorkBudget};
+use super::packets::{IssuedInst, ScheduledRegion};
 use super::refine;
 use super::schedule::{self, Order, Tail};
 use super::step::{Access, Step};
@@ -35,8 +35,8 @@ pub(super) fn schedule(
     regions: Vec<Region>,
     labels: u32,
     memo: &mut Memo,
-    work: &mut Work,
-) -> Vec<Scheduled> {
+    work: &mut WorkBudget,
+) -> Vec<ScheduledRegion> {
     let entering =
         if regions.iter().any(|region| back(region).is_some()) { live(&regions) } else { Vec::new() };
     let mut done = Vec::with_capacity(regions.len());
@@ -108,13 +108,13 @@ fn live(regions: &[Region]) -> Vec<(u32, u64)> {
 
 /// The registers that are live after a region.
 fn leaving(region: &Region, next: Option<&(u32, u64)>, entering: &[(u32, u64)]) -> u64 {
-    let mut live = next.map_or(0, |(_, live)| *live) & !region.beyond.changes;
+    let mut live = next.map_or(0, |(_, live)| *live) & !region.exit_registers.changes;
     for step in &region.branches {
         if let Some(Value::Block(label)) = step.value {
             live |= entering_of(label, entering);
         }
     }
-    live | region.beyond.reads
+    live | region.exit_registers.reads
 }
 
 fn entering_of(label: u32, entering: &[(u32, u64)]) -> u64 {
@@ -147,8 +147,8 @@ impl<'a> Loop<'a> {
         known: &'a mut KnownRegion,
         entering: &[(u32, u64)],
         cycles: u32,
-        work: &mut Work,
-    ) -> Result<Option<Self>, Exceeded> {
+        work: &mut WorkBudget,
+    ) -> Result<Option<Self>, BudgetExceeded> {
         let region = &known.region;
         let Some(back) = back(region) else { return Ok(None) };
         let outside = match region.branches.iter().find(|step| step.value != back.value) {
@@ -166,7 +166,7 @@ impl<'a> Loop<'a> {
             let writes = |inst: &Inst| inst.writes().any(|write| read_after & abi::bit(write.reg) != 0);
             step.access != Access::None || step.forms.first().is_none_or(writes)
         };
-        let question = Question { read_after, cycles };
+        let question = OverlapKey { read_after, cycles };
         let plan = match known.plan(question) {
             Some(plan) => plan.clone(),
             None => {
@@ -180,7 +180,7 @@ impl<'a> Loop<'a> {
     }
 
     /// The regions that replace the loop, and those that are moved to the end of the function.
-    fn parts(&mut self) -> Option<(Vec<Scheduled>, Vec<Scheduled>)> {
+    fn parts(&mut self) -> Option<(Vec<ScheduledRegion>, Vec<ScheduledRegion>)> {
         let (mut parts, mut ends) = (Vec::new(), Vec::new());
         let (commit, stages) = (i64::from(self.plan.commit), i64::from(self.plan.stages()));
         let depth = stages - commit;
@@ -215,7 +215,7 @@ impl<'a> Loop<'a> {
         }
         parts.push(self.packets(label));
         parts.push(self.last()?);
-        let cycles = |parts: &[Scheduled]| parts.iter().map(|part| part.cycles).sum::<u32>();
+        let cycles = |parts: &[ScheduledRegion]| parts.iter().map(|part| part.cycles).sum::<u32>();
         let plain = schedule::schedule(self.region, Order::Early, 0).cycles;
         let overlapped =
             cycles(&parts) + self.plan.period * (PROFITABLE_TRIPS - 1).saturating_sub(depth as u32 - 1);
@@ -282,7 +282,7 @@ impl<'a> Loop<'a> {
         instances.iter().map(|one| self.steps[one.step].clone()).collect()
     }
 
-    fn plain(&self, label: u32, instances: &[Instance], branches: Vec<Step>) -> Scheduled {
+    fn plain(&self, label: u32, instances: &[Instance], branches: Vec<Step>) -> ScheduledRegion {
         let region = Region {
             steps: self.steps(instances),
             branches,
@@ -304,7 +304,7 @@ impl<'a> Loop<'a> {
     }
 
     /// The epilogue of a loop that has only the first `count` iterations.
-    fn end_of(&self, count: i64, label: u32) -> Option<Scheduled> {
+    fn end_of(&self, count: i64, label: u32) -> Option<ScheduledRegion> {
         let step = &self.steps[self.branch()];
         let out = branch_to(step.forms.first()?, Pred::Always, self.outside, step)?;
         let mut end = self.plain(label, &self.endings(count), vec![out]);
@@ -313,15 +313,15 @@ impl<'a> Loop<'a> {
     }
 
     /// The packets of the loop itself.
-    fn packets(&self, label: u32) -> Scheduled {
+    fn packets(&self, label: u32) -> ScheduledRegion {
         let mut insts = Vec::with_capacity(self.steps.len());
         for (step, (cycle, inst)) in self.steps.iter().zip(&self.plan.places) {
             let is_branch = inst.branch().is_some();
             let value = if is_branch { Some(Value::Block(label)) } else { step.value };
-            insts.push(Issued { cycle: cycle % self.plan.period, inst: *inst, value, span: step.span });
+            insts.push(IssuedInst { cycle: cycle % self.plan.period, inst: *inst, value, span: step.span });
         }
         insts.sort_by_key(|issued| issued.cycle);
-        Scheduled {
+        ScheduledRegion {
             label,
             insts,
             cycles: self.plan.period,
@@ -332,7 +332,7 @@ impl<'a> Loop<'a> {
     }
 
     /// The end of the loop after its own packets, with the results that are still in flight.
-    fn last(&mut self) -> Option<Scheduled> {
+    fn last(&mut self) -> Option<ScheduledRegion> {
         let depth = i64::from(self.plan.stages() - self.plan.commit);
         let end = (i64::from(self.plan.commit) + 1) * self.period();
         let start = end - 2 * self.period();

@@ -7,7 +7,7 @@
 
 use cranelift_entity::SecondaryMap;
 
-use super::code::{Block, Code, Condition, End, Inst, VReg};
+use super::code::{Block, Code, Condition, Inst, Terminator, VReg};
 use super::forms::Kind;
 
 /// The most instructions of a block that moves under a condition.
@@ -41,7 +41,7 @@ fn predecessors(code: &Code) -> Vec<u32> {
     if let Some(first) = before.first_mut() {
         *first = 1;
     }
-    for target in code.blocks.iter().flat_map(|block| block.end.targets()) {
+    for target in code.blocks.iter().flat_map(|block| block.terminator.targets()) {
         before[target as usize] += 1;
     }
     before
@@ -49,14 +49,14 @@ fn predecessors(code: &Code) -> Vec<u32> {
 
 /// The blocks that use a register.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Mentioned {
+pub(super) enum UserBlocks {
     #[default]
     Nowhere,
     Block(u32),
     Several,
 }
 
-impl Mentioned {
+impl UserBlocks {
     /// Reports whether it is used by a block other than this one.
     pub(super) fn is_outside(self, block: u32) -> bool {
         match self {
@@ -77,11 +77,11 @@ impl Mentioned {
 }
 
 /// The blocks that use each register; a parameter is used outside all.
-pub(super) fn homes(code: &Code) -> SecondaryMap<VReg, Mentioned> {
+pub(super) fn homes(code: &Code) -> SecondaryMap<VReg, UserBlocks> {
     let mut homes = SecondaryMap::with_capacity(code.regs.len());
     homes.resize(code.regs.len());
     for (reg, _) in &code.params {
-        homes[*reg] = Mentioned::Several;
+        homes[*reg] = UserBlocks::Several;
     }
     for (number, block) in (0..).zip(&code.blocks) {
         let mut mention = |reg: VReg| homes[reg].add(number);
@@ -94,7 +94,7 @@ pub(super) fn homes(code: &Code) -> SecondaryMap<VReg, Mentioned> {
                 code.calls[inst.number as usize].arguments.iter().for_each(|(reg, _)| mention(*reg));
             }
         }
-        if let Some(reg) = block.end.read() {
+        if let Some(reg) = block.terminator.read() {
             mention(reg);
         }
     }
@@ -104,7 +104,7 @@ pub(super) fn homes(code: &Code) -> SecondaryMap<VReg, Mentioned> {
 struct Worker<'a> {
     code: &'a mut Code,
     before: Vec<u32>,
-    home: SecondaryMap<VReg, Mentioned>,
+    home: SecondaryMap<VReg, UserBlocks>,
 }
 
 impl Worker<'_> {
@@ -117,14 +117,14 @@ impl Worker<'_> {
         if self.before[number] == 0 {
             return false;
         }
-        let End::Jump(next) = self.code.blocks[number].end else { return false };
+        let Terminator::Jump(next) = self.code.blocks[number].terminator else { return false };
         let at = next as usize;
         let is_own = at != number && self.before[at] == 1 && at != 0;
         if !is_own || self.code.blocks[number].insts.len() + self.code.blocks[at].insts.len() > LONG {
             return false;
         }
         let insts = std::mem::take(&mut self.code.blocks[at].insts);
-        let end = std::mem::replace(&mut self.code.blocks[at].end, End::Unreachable);
+        let end = std::mem::replace(&mut self.code.blocks[at].terminator, Terminator::Unreachable);
         self.before[at] = 0;
         let (depth, span) = (self.code.blocks[at].depth, self.code.blocks[at].span);
         for inst in &insts {
@@ -135,15 +135,15 @@ impl Worker<'_> {
         }
         let block = &mut self.code.blocks[number];
         block.insts.extend(insts);
-        block.end = end;
+        block.terminator = end;
         block.depth = block.depth.min(depth);
         block.span = span;
         true
     }
 
     fn rehome(&mut self, reg: VReg, from: u32, to: u32) {
-        if self.home[reg] == Mentioned::Block(from) {
-            self.home[reg] = Mentioned::Block(to);
+        if self.home[reg] == UserBlocks::Block(from) {
+            self.home[reg] = UserBlocks::Block(to);
         }
     }
 
@@ -161,14 +161,15 @@ impl Worker<'_> {
 
     /// Puts one or both of the blocks after a branch under its condition.
     fn convert(&mut self, number: usize) -> bool {
-        let End::Branch { condition, negated, then, otherwise } = self.code.blocks[number].end else {
+        let Terminator::Branch { condition, negated, then, otherwise } = self.code.blocks[number].terminator
+        else {
             return false;
         };
         if self.before[number] == 0 || self.code.blocks[number].insts.len() > LONG {
             return false;
         }
-        let after = |worker: &Self, block: u32| match worker.block(block).end {
-            End::Jump(to) if worker.is_short(block, number, condition) => Some(to),
+        let after = |worker: &Self, block: u32| match worker.block(block).terminator {
+            Terminator::Jump(to) if worker.is_short(block, number, condition) => Some(to),
             _ => None,
         };
         let (yes, no) = (after(self, then), after(self, otherwise));
@@ -188,7 +189,7 @@ impl Worker<'_> {
             self.take(number, block, Some((condition, negated)));
         }
         self.before[end as usize] -= 1;
-        self.code.blocks[number].end = End::Jump(end);
+        self.code.blocks[number].terminator = Terminator::Jump(end);
         true
     }
 
@@ -209,18 +210,18 @@ impl Worker<'_> {
 
     fn take(&mut self, number: usize, block: u32, condition: Condition) {
         let insts = std::mem::take(&mut self.code.blocks[block as usize].insts);
-        self.code.blocks[block as usize].end = End::Unreachable;
+        self.code.blocks[block as usize].terminator = Terminator::Unreachable;
         self.before[block as usize] = 0;
         for inst in insts {
             self.under(number, block, inst, condition);
         }
         if let Some((reg, _)) = condition {
-            self.home[reg] = Mentioned::Several;
+            self.home[reg] = UserBlocks::Several;
         }
     }
 
     fn under(&mut self, number: usize, block: u32, mut inst: Inst, condition: Condition) {
-        let is_own = inst.written().is_some_and(|(reg, _)| self.home[reg] == Mentioned::Block(block));
+        let is_own = inst.written().is_some_and(|(reg, _)| self.home[reg] == UserBlocks::Block(block));
         let is_memory = inst.kind.bytes().is_some();
         let reg = inst.written().map(|(reg, _)| reg);
         self.move_home(&inst, block, number as u32);
@@ -256,7 +257,7 @@ fn compact(code: &mut Code) {
         if let Some(block) = code.blocks.get(number as usize)
             && !std::mem::replace(&mut reached[number as usize], true)
         {
-            open.extend(block.end.targets());
+            open.extend(block.terminator.targets());
         }
     }
     let mut numbers = vec![0_u32; code.blocks.len()];
@@ -271,14 +272,14 @@ fn compact(code: &mut Code) {
     code.blocks.retain(|_| keep.next().unwrap_or(false));
     let renumber = |to: &mut u32| *to = numbers[*to as usize];
     for block in &mut code.blocks {
-        match &mut block.end {
-            End::Jump(to) => renumber(to),
-            End::Branch { then, otherwise, .. } => {
+        match &mut block.terminator {
+            Terminator::Jump(to) => renumber(to),
+            Terminator::Branch { then, otherwise, .. } => {
                 renumber(then);
                 renumber(otherwise);
             }
-            End::Table { targets, .. } => targets.iter_mut().for_each(renumber),
-            End::Return(_) | End::Unreachable => {}
+            Terminator::Table { targets, .. } => targets.iter_mut().for_each(renumber),
+            Terminator::Return(_) | Terminator::Unreachable => {}
         }
     }
     code.tables.iter_mut().flatten().for_each(renumber);

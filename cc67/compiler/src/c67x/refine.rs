@@ -7,7 +7,7 @@
 use c67x::Inst;
 
 use super::graph::{self, BRANCH, Graph};
-use super::packets::{FETCH, Issued, LONGEST, Scheduled};
+use super::packets::{FETCH, IssuedInst, LONGEST, ScheduledRegion};
 use super::resources::Resources;
 use super::step::{Access, Step};
 
@@ -22,13 +22,13 @@ const REACH: u32 = 1024;
 #[derive(Debug)]
 pub(super) struct Item<'a> {
     pub(super) step: &'a Step,
-    pub(super) issued: Issued,
+    pub(super) issued: IssuedInst,
     /// Its node in the graph; `None` if it is not moved.
     pub(super) node: Option<usize>,
 }
 
 /// The address of the word after a region that begins at the word `at`.
-pub(super) fn end(region: &Scheduled, mut at: u32) -> u32 {
+pub(super) fn end(region: &ScheduledRegion, mut at: u32) -> u32 {
     let mut cycle = 0;
     let mut insts = region.insts.iter().peekable();
     while cycle < region.cycles {

@@ -11,7 +11,7 @@ use c67x::Inst;
 
 use super::expand::Region;
 use super::graph::{self, BRANCH, Graph};
-use super::packets::{Issued, Scheduled};
+use super::packets::{IssuedInst, ScheduledRegion};
 use super::refine::{self, Item};
 use super::resources::Resources;
 use super::step::{Access, Step};
@@ -31,7 +31,7 @@ pub(super) enum Order {
 }
 
 /// Schedules a region that begins at the word `at`.
-pub(super) fn schedule(region: &Region, order: Order, at: u32) -> Scheduled {
+pub(super) fn schedule(region: &Region, order: Order, at: u32) -> ScheduledRegion {
     let Region { steps, branches, late, .. } = region;
     let graph = graph::build(steps, branches);
     let mut list = List::new(&graph, order);
@@ -44,10 +44,10 @@ pub(super) fn schedule(region: &Region, order: Order, at: u32) -> Scheduled {
     if order == Order::Early {
         refine::run(&mut items, &graph, cycles, at);
     }
-    let mut insts: Vec<Issued> = items.into_iter().map(|item| item.issued).collect();
+    let mut insts: Vec<IssuedInst> = items.into_iter().map(|item| item.issued).collect();
     insts.sort_by_key(|issued| issued.cycle);
     let Region { label, span, weight, .. } = *region;
-    Scheduled { label, insts, cycles, weight, span, is_exceeded: false }
+    ScheduledRegion { label, insts, cycles, weight, span, is_exceeded: false }
 }
 
 /// Steps that issued before a region and may have results in flight when it begins, and the cycle when it does.
@@ -58,7 +58,7 @@ pub(super) struct Tail {
 }
 
 /// Schedules a region after packets that are fixed.
-pub(super) fn schedule_after(tail: &Tail, region: Region) -> Scheduled {
+pub(super) fn schedule_after(tail: &Tail, region: Region) -> ScheduledRegion {
     let Region { label, steps: own, branches, span, weight, .. } = region;
     let steps: Vec<Step> = tail.issued.iter().map(|(step, ..)| step.clone()).chain(own).collect();
     let graph = graph::build(&steps, &branches);
@@ -72,10 +72,10 @@ pub(super) fn schedule_after(tail: &Tail, region: Region) -> Scheduled {
     let landing = tail.issued.iter().map(|(_, inst, cycle)| cycle + graph::landing(inst)).max();
     let end = list.steps(&steps).max(landing.unwrap_or(0)).max(tail.cycles);
     let cycles = list.branches(&steps, &branches, end) - tail.cycles;
-    let mut insts: Vec<Issued> = list.issued.into_iter().map(|item| item.issued).collect();
+    let mut insts: Vec<IssuedInst> = list.issued.into_iter().map(|item| item.issued).collect();
     insts.iter_mut().for_each(|issued| issued.cycle -= tail.cycles);
     insts.sort_by_key(|issued| issued.cycle);
-    Scheduled { label, insts, cycles, weight, span, is_exceeded: false }
+    ScheduledRegion { label, insts, cycles, weight, span, is_exceeded: false }
 }
 
 struct List<'a> {
@@ -191,7 +191,7 @@ impl<'a> List<'a> {
         if step.access != Access::None {
             self.last_access = self.last_access.max(cycle);
         }
-        let issued = Issued { cycle, inst, value: step.value, span: step.span };
+        let issued = IssuedInst { cycle, inst, value: step.value, span: step.span };
         self.issued.push(Item { step, issued, node });
     }
 

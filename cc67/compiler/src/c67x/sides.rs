@@ -10,7 +10,7 @@ use cranelift_entity::SecondaryMap;
 use cranelift_entity::packed_option::PackedOption;
 
 use super::abi;
-use super::code::{Arg, Base, Code, Info, Inst, MemoryPlace, VReg};
+use super::code::{Arg, Base, Code, Inst, MemoryPlace, VReg, VRegInfo};
 use super::forms::{Crossing, Kind};
 
 /// The cost of a source on the other side, in instructions of imbalance.
@@ -56,9 +56,9 @@ pub(super) fn assign(code: &mut Code, policy: Policy) {
     spread_bases(code);
     let (indexes, readers) = (indexes(code), readers(code));
     for (number, block) in (0..).zip(&code.blocks) {
-        let policy = block.end.targets().any(|to| to == number).then_some(policy);
+        let policy = block.terminator.targets().any(|to| to == number).then_some(policy);
         let (indexes, readers) = (&indexes, &readers);
-        let mut load = Load { indexes, readers, policy, insts: [0; 2], pairs: [0; 2], loads: [0; 2] };
+        let mut load = SideLoad { indexes, readers, policy, insts: [0; 2], pairs: [0; 2], loads: [0; 2] };
         for inst in &block.insts {
             place(&mut code.regs, inst, &mut load);
         }
@@ -79,7 +79,7 @@ pub(super) fn assign(code: &mut Code, policy: Policy) {
 /// Distributes the accesses of a short loop over both sides: an access uses a unit on the side of its base.
 fn spread_bases(code: &mut Code) {
     for (number, block) in (0..).zip(&code.blocks) {
-        if !block.end.targets().any(|to| to == number) {
+        if !block.terminator.targets().any(|to| to == number) {
             continue;
         }
         let mut bases: Vec<(VReg, i32)> = Vec::new();
@@ -111,10 +111,10 @@ fn spread_bases(code: &mut Code) {
     }
 }
 
-type Regs = cranelift_entity::PrimaryMap<VReg, Info>;
+type Regs = cranelift_entity::PrimaryMap<VReg, VRegInfo>;
 
 /// Chooses the side of an instruction's result if it has none yet.
-fn place(regs: &mut Regs, inst: &Inst, load: &mut Load<'_>) {
+fn place(regs: &mut Regs, inst: &Inst, load: &mut SideLoad<'_>) {
     let is_nothing = matches!(inst.kind, Kind::Begin | Kind::Call);
     let side = match (inst.dst.reg(), inst.place) {
         (_, Some(place)) if inst.kind.bytes().is_some() => {
@@ -151,7 +151,7 @@ fn place(regs: &mut Regs, inst: &Inst, load: &mut Load<'_>) {
 
 /// The load of each side in a block so far.
 #[derive(Debug)]
-struct Load<'a> {
+struct SideLoad<'a> {
     /// The index used with each constant base of an access.
     indexes: &'a SecondaryMap<VReg, PackedOption<VReg>>,
     /// The result of an instruction that reads each register.
@@ -165,7 +165,7 @@ struct Load<'a> {
     loads: [i32; 2],
 }
 
-impl Load<'_> {
+impl SideLoad<'_> {
     /// The best side for loading a register.
     fn loaded(&self, regs: &Regs, dst: VReg) -> Side {
         let info = &regs[dst];
@@ -227,7 +227,7 @@ fn indexes(code: &Code) -> SecondaryMap<VReg, PackedOption<VReg>> {
     indexes
 }
 
-fn best(regs: &Regs, inst: &Inst, dst: VReg, load: &Load<'_>) -> Side {
+fn best(regs: &Regs, inst: &Inst, dst: VReg, load: &SideLoad<'_>) -> Side {
     let cost = |side: Side| {
         let own = load.insts[side.bit() as usize];
         let other = load.insts[side.other().bit() as usize];
@@ -303,7 +303,7 @@ impl Copier<'_> {
             return Arg::Reg(*copy);
         }
         let is_pair = matches!(arg, Arg::Reg(_)) && self.regs[reg].is_pair;
-        let copy = self.regs.push(Info { is_pair, side: Some(side), ..Info::default() });
+        let copy = self.regs.push(VRegInfo { is_pair, side: Some(side), ..VRegInfo::default() });
         let copy_word = |dst, src| Inst::new(Kind::Move, dst, Arg::number(0), src, span);
         if is_pair {
             self.out.push(Inst::new(Kind::Begin, copy.into(), Arg::None, Arg::None, span));
@@ -318,7 +318,7 @@ impl Copier<'_> {
 }
 
 /// Returns the set of registers available for a value.
-pub(super) fn allowed_registers(info: &Info) -> u64 {
+pub(super) fn allowed_registers(info: &VRegInfo) -> u64 {
     let side = info.side.unwrap_or(Side::A);
     let file = abi::file(side) & abi::USABLE;
     if info.is_condition { file & abi::CONDITIONS } else { file }

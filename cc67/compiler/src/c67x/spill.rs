@@ -4,7 +4,7 @@
 
 use cranelift_entity::SecondaryMap;
 
-use super::code::{Arg, Base, Code, Info, Inst, MemoryPlace, VReg, Value};
+use super::code::{Arg, Base, Code, Inst, MemoryPlace, VReg, VRegInfo, Value};
 use super::forms::Kind;
 use super::select::make;
 
@@ -13,14 +13,14 @@ pub(super) fn to_memory(code: &mut Code, moved: &[VReg]) {
     let mut mentions = Mentions::new(code, moved);
     for (index, reg) in moved.iter().enumerate() {
         let home = match code.regs[*reg].constant {
-            Some(value) => Home::Constant(value),
+            Some(value) => ReloadSource::Constant(value),
             None => {
                 let first = code.spills.next_multiple_of(2);
                 code.spills = first + if code.regs[*reg].is_pair { 2 } else { 1 };
-                Home::Memory(first)
+                ReloadSource::Memory(first)
             }
         };
-        let mut mover = Mover { code, reg: *reg, home };
+        let mut mover = Spiller { code, reg: *reg, source: home };
         mentions.first.splice(0..0, mover.params());
         for mention in std::mem::take(&mut mentions.of[index]) {
             mover.mention(&mut mentions.all[mention as usize]);
@@ -69,7 +69,7 @@ impl Mentions {
                 mentions.add(&mut found, Mention { block, at: Some(at), insts: vec![*inst] });
             }
             found.clear();
-            found.extend(own.end.read().and_then(|reg| number[reg]));
+            found.extend(own.terminator.read().and_then(|reg| number[reg]));
             mentions.add(&mut found, Mention { block, at: None, insts: Vec::new() });
         }
         mentions
@@ -119,23 +119,23 @@ const CROWDED: usize = 6;
 
 /// The source of a spilled register's value.
 #[derive(Clone, Copy)]
-enum Home {
+enum ReloadSource {
     Memory(u32),
     Constant(Value),
 }
 
-struct Mover<'a> {
+struct Spiller<'a> {
     code: &'a mut Code,
     reg: VReg,
-    home: Home,
+    source: ReloadSource,
 }
 
-impl Mover<'_> {
+impl Spiller<'_> {
     /// A register for one instruction that replaces the spilled one.
     fn short(&mut self, is_pair: bool) -> VReg {
         let old = self.code.regs[self.reg];
         let is_condition = old.is_condition && !is_pair;
-        self.code.reg(Info {
+        self.code.reg(VRegInfo {
             is_pair,
             side: old.side,
             is_condition,
@@ -171,10 +171,10 @@ impl Mover<'_> {
         for inst in std::mem::take(&mut mention.insts) {
             self.inst(inst, &mut out);
         }
-        if mention.at.is_none() && self.code.blocks[mention.block].end.read() == Some(self.reg) {
+        if mention.at.is_none() && self.code.blocks[mention.block].terminator.read() == Some(self.reg) {
             let span = self.code.blocks[mention.block].span;
             let short = self.load(span, &mut out);
-            if let Some(read) = self.code.blocks[mention.block].end.read_mut() {
+            if let Some(read) = self.code.blocks[mention.block].terminator.read_mut() {
                 *read = short;
             }
         }
@@ -184,7 +184,8 @@ impl Mover<'_> {
     fn inst(&mut self, mut inst: Inst, out: &mut Vec<Inst>) {
         let reg = self.reg;
         let written = inst.written().filter(|(written, _)| *written == reg);
-        if written.is_some() && (inst.kind == Kind::Begin || matches!(self.home, Home::Constant(_))) {
+        if written.is_some() && (inst.kind == Kind::Begin || matches!(self.source, ReloadSource::Constant(_)))
+        {
             return;
         }
         let mut is_read = false;
@@ -253,14 +254,14 @@ impl Mover<'_> {
     fn load(&mut self, span: crate::source::Span, out: &mut Vec<Inst>) -> VReg {
         let is_pair = self.is_pair();
         let short = self.short(is_pair);
-        match self.home {
-            Home::Constant(value) => out.extend(make(short.into(), value, span)),
-            Home::Memory(first) if is_pair => {
+        match self.source {
+            ReloadSource::Constant(value) => out.extend(make(short.into(), value, span)),
+            ReloadSource::Memory(first) if is_pair => {
                 let mut inst = Inst::new(Kind::LoadPair, short.into(), Arg::None, Arg::None, span);
                 inst.place = Some(MemoryPlace::new(Base::Spill(first), 0));
                 out.push(inst);
             }
-            Home::Memory(first) => {
+            ReloadSource::Memory(first) => {
                 let mut inst = Inst::new(Kind::LoadWord, short.into(), Arg::None, Arg::None, span);
                 inst.place = Some(MemoryPlace::new(Base::Spill(first), 0));
                 out.push(inst);
@@ -271,7 +272,7 @@ impl Mover<'_> {
 
     fn load_word(&mut self, offset: i32, span: crate::source::Span, out: &mut Vec<Inst>) -> VReg {
         let short = self.short(false);
-        if let Home::Memory(first) = self.home {
+        if let ReloadSource::Memory(first) = self.source {
             let mut inst = Inst::new(Kind::LoadWord, short.into(), Arg::None, Arg::None, span);
             inst.place = Some(MemoryPlace::new(Base::Spill(first), offset));
             out.push(inst);
@@ -289,7 +290,7 @@ impl Mover<'_> {
     }
 
     fn store_word(&mut self, arg: Arg, offset: i32, span: crate::source::Span, out: &mut Vec<Inst>) {
-        if let Home::Memory(first) = self.home {
+        if let ReloadSource::Memory(first) = self.source {
             let mut inst = Inst::new(Kind::StoreWord, Arg::None, Arg::None, arg, span);
             inst.place = Some(MemoryPlace::new(Base::Spill(first), offset));
             out.push(inst);

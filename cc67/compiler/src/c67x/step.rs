@@ -44,7 +44,7 @@ pub(super) struct Step {
 
 /// An operand as a register of the processor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Final {
+pub(super) enum PhysicalOperand {
     None,
     Reg(Reg),
     Pair(Pair),
@@ -54,9 +54,9 @@ pub(super) enum Final {
 /// The sources and the result of an instruction, by field.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Operands {
-    pub(super) dst: Final,
-    pub(super) src1: Final,
-    pub(super) src2: Final,
+    pub(super) dst: PhysicalOperand,
+    pub(super) src1: PhysicalOperand,
+    pub(super) src2: PhysicalOperand,
     pub(super) mem: Option<Mem>,
     pub(super) field: (u8, u8),
     pub(super) pred: Pred,
@@ -67,7 +67,7 @@ pub(super) fn step(kind: Kind, operands: &Operands, access: Access, span: Span) 
     let side = unit_side(operands);
     let forms: Vec<Inst> = kind.forms().iter().filter_map(|form| build(*form, side, operands)).collect();
     let value = [operands.src1, operands.src2].into_iter().find_map(|operand| match operand {
-        Final::Value(value) if matches!(kind, Kind::Mvk | Kind::Mvkh | Kind::Branch) => Some(value),
+        PhysicalOperand::Value(value) if matches!(kind, Kind::Mvk | Kind::Mvkh | Kind::Branch) => Some(value),
         _ => None,
     });
     (!forms.is_empty()).then_some(Step { forms, value, access, span })
@@ -79,15 +79,18 @@ fn unit_side(operands: &Operands) -> Option<Side> {
         return Some(mem.base.side());
     }
     match operands.dst {
-        Final::Reg(reg) => Some(reg.side()),
-        Final::Pair(pair) => Some(pair.side()),
-        Final::None | Final::Value(_) => None,
+        PhysicalOperand::Reg(reg) => Some(reg.side()),
+        PhysicalOperand::Pair(pair) => Some(pair.side()),
+        PhysicalOperand::None | PhysicalOperand::Value(_) => None,
     }
 }
 
 fn build(form: Form, side: Option<Side>, operands: &Operands) -> Option<Inst> {
     // It has no source: it adds to its destination.
-    if form.op == c67x::Op::Addk && !matches!(operands.src2, Final::None) && operands.src2 != operands.dst {
+    if form.op == c67x::Op::Addk
+        && !matches!(operands.src2, PhysicalOperand::None)
+        && operands.src2 != operands.dst
+    {
         return None;
     }
     let row = form.op.row();
@@ -112,12 +115,12 @@ fn build(form: Form, side: Option<Side>, operands: &Operands) -> Option<Inst> {
     Inst::new(form.op, side, operands.pred, list).ok()
 }
 
-fn operand(operand: Final, form: Form) -> Option<Operand> {
+fn operand(operand: PhysicalOperand, form: Form) -> Option<Operand> {
     Some(match operand {
-        Final::None => return None,
-        Final::Reg(reg) => Operand::Reg(reg),
-        Final::Pair(pair) => Operand::Pair(pair),
-        Final::Value(value) => {
+        PhysicalOperand::None => return None,
+        PhysicalOperand::Reg(reg) => Operand::Reg(reg),
+        PhysicalOperand::Pair(pair) => Operand::Pair(pair),
+        PhysicalOperand::Value(value) => {
             let number = match value {
                 Value::Number(number) => number,
                 Value::Symbol(..) | Value::Block(_) | Value::Table(_) => 0,
@@ -149,15 +152,19 @@ pub(super) struct Finalizer<'a> {
 }
 
 impl Finalizer<'_> {
-    pub(super) fn arg(&self, arg: Arg) -> Final {
+    pub(super) fn arg(&self, arg: Arg) -> PhysicalOperand {
         match arg {
-            Arg::None => Final::None,
-            Arg::Value(value) => Final::Value(value),
-            Arg::Low(reg) => Final::Reg(self.assignment.of(reg)),
-            Arg::High(reg) => Final::Reg(self.assignment.of(reg).pair().high()),
+            Arg::None => PhysicalOperand::None,
+            Arg::Value(value) => PhysicalOperand::Value(value),
+            Arg::Low(reg) => PhysicalOperand::Reg(self.assignment.of(reg)),
+            Arg::High(reg) => PhysicalOperand::Reg(self.assignment.of(reg).pair().high()),
             Arg::Reg(reg) => {
                 let at = self.assignment.of(reg);
-                if self.code.regs[reg].is_pair { Final::Pair(at.pair()) } else { Final::Reg(at) }
+                if self.code.regs[reg].is_pair {
+                    PhysicalOperand::Pair(at.pair())
+                } else {
+                    PhysicalOperand::Reg(at)
+                }
             }
         }
     }

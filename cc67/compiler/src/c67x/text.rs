@@ -22,7 +22,7 @@ pub(crate) struct Fixup {
 
 /// A function in words.
 #[derive(Debug)]
-pub(crate) struct Words {
+pub(crate) struct MachineText {
     /// Its words in the unit's text.
     pub(crate) words: Range<u32>,
     pub(crate) fixups: Vec<Fixup>,

@@ -7,9 +7,9 @@
 
 use cranelift_entity::SecondaryMap;
 
-use super::code::{Arg, Base, Block, Code, Condition, End, Info, Inst, VReg};
+use super::code::{Arg, Base, Block, Code, Condition, Inst, Terminator, VReg, VRegInfo};
 use super::forms::Kind;
-use super::predicate::{self, Mentioned};
+use super::predicate::{self, UserBlocks};
 
 /// The largest iteration that is unrolled, in instructions.
 const LARGEST: usize = 20;
@@ -46,7 +46,7 @@ pub(super) fn run(code: &mut Code, skipped: u32) -> u32 {
         let out = worker.out;
         code.blocks[number].insts = out;
         code.blocks[number].unrolled = copies as u32;
-        if let Some(read) = code.blocks[number].end.read_mut() {
+        if let Some(read) = code.blocks[number].terminator.read_mut() {
             *read = condition.0;
         }
     }
@@ -55,20 +55,24 @@ pub(super) fn run(code: &mut Code, skipped: u32) -> u32 {
 
 /// The condition under which a block jumps to itself.
 fn back(block: &Block, number: u32) -> Option<(VReg, bool)> {
-    match block.end {
-        End::Branch { condition, negated, then, otherwise } if then != otherwise => {
+    match block.terminator {
+        Terminator::Branch { condition, negated, then, otherwise } if then != otherwise => {
             if then == number {
                 Some((condition, negated))
             } else {
                 (otherwise == number).then_some((condition, !negated))
             }
         }
-        End::Branch { .. } | End::Jump(_) | End::Table { .. } | End::Return(_) | End::Unreachable => None,
+        Terminator::Branch { .. }
+        | Terminator::Jump(_)
+        | Terminator::Table { .. }
+        | Terminator::Return(_)
+        | Terminator::Unreachable => None,
     }
 }
 
 /// The facts about a loop.
-struct Facts {
+struct LoopFacts {
     /// The registers that an iteration writes and the next iteration, or the code after the loop, may read.
     carried: Vec<VReg>,
     /// The register of the jump back, and the instruction that writes it last.
@@ -81,10 +85,10 @@ struct Facts {
 /// Returns the facts for rewriting a loop; `None` if it cannot be rewritten.
 fn facts(
     code: &Code,
-    homes: &SecondaryMap<VReg, Mentioned>,
+    homes: &SecondaryMap<VReg, UserBlocks>,
     number: usize,
     back: (VReg, bool),
-) -> Option<Facts> {
+) -> Option<LoopFacts> {
     let block = &code.blocks[number];
     let is_simple = |inst: &Inst| {
         !matches!(inst.kind, Kind::Call | Kind::FrameAddress)
@@ -138,12 +142,12 @@ fn facts(
             carried.push(reg);
         }
     }
-    Some(Facts { carried, condition: back.0, last, tested: tested.len() })
+    Some(LoopFacts { carried, condition: back.0, last, tested: tested.len() })
 }
 
 struct Unroller<'a> {
     code: &'a mut Code,
-    facts: Facts,
+    facts: LoopFacts,
     out: Vec<Inst>,
     /// The present name of each register that an iteration wrote.
     names: SecondaryMap<VReg, Option<VReg>>,
@@ -183,7 +187,7 @@ impl Unroller<'_> {
 
     fn reg_like(&mut self, reg: VReg) -> VReg {
         let info = self.code.regs[reg];
-        self.code.reg(Info { side: None, hint: None, constant: None, ..info })
+        self.code.reg(VRegInfo { side: None, hint: None, constant: None, ..info })
     }
 
     fn name(&self, reg: VReg) -> VReg {

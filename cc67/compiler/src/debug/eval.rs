@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 use kmotiondef::GuestAddr;
 
 use super::scope;
-use super::value::{Data, DebugValue, Displayed};
+use super::value::{Data, DebugValue, DisplayContext};
 use super::{LocalModel, Model};
 use crate::diag::Severity;
-use crate::driver::{CompileContext, CompileRequest, Front, on_large_stack};
+use crate::driver::{CompileContext, CompileRequest, FrontEndOutput, on_large_stack};
 use crate::inspect::EntryKind;
 use crate::names::Names;
 use crate::pp::Disk;
@@ -114,7 +114,7 @@ struct ProbeNames<'a> {
 }
 
 /// An expression in the text of a program.
-struct Inserted<'a> {
+struct InsertedExpression<'a> {
     range: std::ops::Range<u32>,
     /// The function around it, and its locals.
     function: &'a str,
@@ -191,7 +191,8 @@ impl Model {
                 (from, text.len(), name, [].as_slice())
             }
         };
-        let inserted = Inserted { range: from as u32..until as u32, function: name, locals, is_address };
+        let inserted =
+            InsertedExpression { range: from as u32..until as u32, function: name, locals, is_address };
         self.compile(text, &inserted, probe_names)
     }
 
@@ -219,14 +220,14 @@ impl Model {
     fn compile(
         &self,
         text: Vec<u8>,
-        inserted: &Inserted<'_>,
+        inserted: &InsertedExpression<'_>,
         probe_names: &ProbeNames<'_>,
     ) -> Result<Probe, ProbeError> {
-        let Inserted { range: inserted, function: name, locals, is_address } = inserted;
+        let InsertedExpression { range: inserted, function: name, locals, is_address } = inserted;
         let (is_address, items) = (*is_address, probe_names.items);
         let mut context = CompileContext::default();
         let request = CompileRequest { path: &self.path, options: &self.options, files: &Disk };
-        let Front { main, mut unit } = request.front(text, &mut context);
+        let FrontEndOutput { main, mut unit } = request.front(text, &mut context);
         let CompileContext { sources, names, sink } = context;
         let error = sink.diagnostics().iter().find(|diagnostic| diagnostic.severity == Severity::Error);
         if let Some(error) = error {
@@ -284,9 +285,9 @@ impl Model {
         &'a self,
         local: &LocalModel,
         reader: &'a dyn DebugReader,
-    ) -> Option<(DebugValue, Displayed<'a>)> {
+    ) -> Option<(DebugValue, DisplayContext<'a>)> {
         let place = reader.local(local)?;
-        let shown = Displayed { types: &self.unit.types, names: &self.names, reader };
+        let shown = DisplayContext { types: &self.unit.types, names: &self.names, reader };
         Some((DebugValue::of(local.type_id, place), shown))
     }
 
@@ -297,13 +298,13 @@ impl Model {
         function: &str,
         slot: u64,
         reader: &'a dyn DebugReader,
-    ) -> Option<(DebugValue, Displayed<'a>)> {
+    ) -> Option<(DebugValue, DisplayContext<'a>)> {
         let symbol = self.unit.symbols.values().find(|symbol| symbol.name == function)?;
         let Type::Function(function) = self.unit.types.get(symbol.ty) else { return None };
         if matches!(self.unit.types.get(function.result), Type::Void | Type::Record(_)) {
             return None;
         }
-        let shown = Displayed { types: &self.unit.types, names: &self.names, reader };
+        let shown = DisplayContext { types: &self.unit.types, names: &self.names, reader };
         Some((DebugValue { ty: function.result, data: Data::Slot(slot) }, shown))
     }
 
@@ -314,9 +315,9 @@ impl Model {
         name: &str,
         address: u32,
         reader: &'a dyn DebugReader,
-    ) -> Option<(DebugValue, Displayed<'a>)> {
+    ) -> Option<(DebugValue, DisplayContext<'a>)> {
         let symbol = self.unit.symbols.values().find(|symbol| symbol.name == name)?;
-        let shown = Displayed { types: &self.unit.types, names: &self.names, reader };
+        let shown = DisplayContext { types: &self.unit.types, names: &self.names, reader };
         Some((DebugValue { ty: symbol.ty, data: Data::Memory(GuestAddr::new(address)) }, shown))
     }
 }
@@ -374,7 +375,7 @@ fn no_memory(address: GuestAddr) -> String {
 }
 
 /// A reader as an expression wants it.
-struct Inner<'a, R: ?Sized> {
+struct ProbeReader<'a, R: ?Sized> {
     reader: &'a R,
     locals: &'a BTreeMap<LocalId, LocalModel>,
     results: Option<&'a CallResults>,
@@ -382,7 +383,7 @@ struct Inner<'a, R: ?Sized> {
     unmapped: Cell<Option<GuestAddr>>,
 }
 
-impl<R: DebugReader + ?Sized> watch::ItemReader for Inner<'_, R> {
+impl<R: DebugReader + ?Sized> watch::ItemReader for ProbeReader<'_, R> {
     #[inline]
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
         self.reader.word(address).unwrap_or_else(|| {
@@ -427,7 +428,8 @@ impl Probe {
     /// # Errors
     /// As [`value`](Self::value).
     pub fn value_with(&self, reader: &dyn DebugReader, results: &CallResults) -> Result<DebugValue, String> {
-        let inner = Inner { reader, locals: &self.locals, results: Some(results), unmapped: Cell::new(None) };
+        let inner =
+            ProbeReader { reader, locals: &self.locals, results: Some(results), unmapped: Cell::new(None) };
         let value = self.value_in(&inner)?;
         let unmapped = inner.unmapped.get();
         let place = value.address().filter(|address| !reader.is_mapped(*address));
@@ -440,12 +442,12 @@ impl Probe {
             let number = self.value(reader).ok().and_then(|value| self.shown(reader).number(&value));
             return number.is_some_and(|number| number != 0.0);
         }
-        let inner = Inner { reader, locals: &self.locals, results: None, unmapped: Cell::new(None) };
+        let inner = ProbeReader { reader, locals: &self.locals, results: None, unmapped: Cell::new(None) };
         let truth = self.expression.truth(&inner);
         inner.unmapped.get().is_none() && truth == Some(true)
     }
 
-    fn value_in(&self, inner: &Inner<'_, dyn DebugReader + '_>) -> Result<DebugValue, String> {
+    fn value_in(&self, inner: &ProbeReader<'_, dyn DebugReader + '_>) -> Result<DebugValue, String> {
         let reader = inner.reader;
         let function = self.expression.function();
         let ty = function.exprs[self.value].ty;
@@ -504,8 +506,8 @@ impl Probe {
 
     /// Types and names, to show the value.
     #[must_use]
-    pub fn shown<'a>(&'a self, reader: &'a dyn DebugReader) -> Displayed<'a> {
-        Displayed { types: &self.unit.types, names: &self.names, reader }
+    pub fn shown<'a>(&'a self, reader: &'a dyn DebugReader) -> DisplayContext<'a> {
+        DisplayContext { types: &self.unit.types, names: &self.names, reader }
     }
 
     /// A number as memory would hold it in this place; `None` for a structure or an array.

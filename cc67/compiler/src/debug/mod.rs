@@ -12,7 +12,7 @@ mod value;
 
 pub use eval::{CallResults, CodeScope, DebugReader, LocalPlace, Probe};
 pub use text::NumberFormat;
-pub use value::{Child, DebugValue, Displayed};
+pub use value::{Child, DebugValue, DisplayContext};
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -24,7 +24,7 @@ use kmotiondef::boards::{TargetBoard, boards};
 use crate::driver::{Options, front_and_object, on_large_stack};
 use crate::image;
 use crate::inspect::{Entry, EntryKind, Inspection};
-use crate::link::Linked;
+use crate::link::LinkedProgram;
 use crate::names::Names;
 use crate::object::{InlinedPlaces, Object, ObjectFunction, VariablePlaces};
 use crate::passes::Level;
@@ -204,7 +204,7 @@ impl Model {
     ) -> Result<(Self, Object, SourceMap), String> {
         let (unit, mut compilation, names) = front_and_object(path, text.clone(), options, files);
         let object = compilation.object.clone().ok_or("the source has errors")?;
-        let linked: Option<Linked> = compilation.link(thread, options);
+        let linked: Option<LinkedProgram> = compilation.link(thread, options);
         let made = linked.and_then(|linked| image::write(&linked).ok()).ok_or("the source does not link")?;
         if made != program {
             return Err("the source compiles to a different image".to_owned());

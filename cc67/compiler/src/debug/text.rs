@@ -2,7 +2,7 @@
 
 use kmotiondef::GuestAddr;
 
-use super::value::{DebugValue, Displayed};
+use super::value::{DebugValue, DisplayContext};
 use crate::ast::RecordKind;
 use crate::sema::constants::Constant;
 use crate::ty::{QualifiedType, RecordId, Type, TypeId};
@@ -91,7 +91,7 @@ impl NumberFormat {
     }
 }
 
-impl Displayed<'_> {
+impl DisplayContext<'_> {
     /// The value in one line.
     #[must_use]
     pub fn text(&self, value: &DebugValue) -> String {

@@ -68,13 +68,13 @@ pub(super) fn unreadable(address: GuestAddr) -> String {
 
 /// Types, their names, and the memory from which values are read.
 #[derive(Clone, Copy)]
-pub struct Displayed<'a> {
+pub struct DisplayContext<'a> {
     pub(super) types: &'a Types,
     pub(super) names: &'a Names,
     pub(super) reader: &'a dyn DebugReader,
 }
 
-impl Displayed<'_> {
+impl DisplayContext<'_> {
     /// The type as C spells it, with a blank before the size of an array as in gdb.
     #[must_use]
     pub fn type_of(&self, value: &DebugValue) -> String {

@@ -17,12 +17,12 @@ pub struct Levels {
     /// `-w`
     is_silent: bool,
     /// The settings of single lints, the last of each.
-    named: Vec<Named>,
+    named: Vec<LintSetting>,
 }
 
 /// The setting of one lint.
 #[derive(Clone, Copy, Debug)]
-struct Named {
+struct LintSetting {
     lint: Lint,
     shown: Option<bool>,
     as_error: Option<bool>,
@@ -87,14 +87,14 @@ impl Levels {
         self.is_silent = true;
     }
 
-    fn named(&mut self, name: &str) -> Result<&mut Named, UnknownLint> {
+    fn named(&mut self, name: &str) -> Result<&mut LintSetting, UnknownLint> {
         Lint::named(name).map(|lint| self.entry(lint))
     }
 
-    fn entry(&mut self, lint: Lint) -> &mut Named {
+    fn entry(&mut self, lint: Lint) -> &mut LintSetting {
         let index = self.named.iter().position(|named| named.lint == lint).unwrap_or(self.named.len());
         if index == self.named.len() {
-            self.named.push(Named { lint, shown: None, as_error: None });
+            self.named.push(LintSetting { lint, shown: None, as_error: None });
         }
         &mut self.named[index]
     }

@@ -28,10 +28,10 @@ use crate::bytecode::Generator;
 use crate::diag::{Diagnostic, Sink};
 use crate::firmware::{Firmware, FirmwareNames};
 use crate::ir::function::Function;
-use crate::link::{self, LinkErrorKind, Linked, SectionAddresses};
+use crate::link::{self, LinkErrorKind, LinkedProgram, SectionAddresses};
 use crate::lints::LintContext;
 use crate::names::Names;
-use crate::object::{self, About, Object, UnitBuilder};
+use crate::object::{self, FunctionFacts, Object, UnitBuilder};
 use crate::passes::inline::Candidates;
 use crate::passes::{self, Level};
 use crate::pp::{Headers, HeadersRead};
@@ -237,7 +237,7 @@ pub(crate) fn compile_here(
 fn compile_text(request: CompileRequest<'_>, text: &Arc<Vec<u8>>, headers: Headers) -> (Compilation, bool) {
     let CompileRequest { path, options, files } = request;
     let mut context = CompileContext::default();
-    let (Front { unit, .. }, read) = request.front_with(headers, Arc::clone(text), &mut context);
+    let (FrontEndOutput { unit, .. }, read) = request.front_with(headers, Arc::clone(text), &mut context);
     let CompileContext { sources, names, mut sink } = context;
     let name = path.to_string_lossy().into_owned();
     // Earlier messages may name any declaration; later ones only name declarations that the program uses.
@@ -360,7 +360,7 @@ impl Default for CompileContext {
 
 /// The result of the front end.
 #[derive(Debug)]
-pub struct Front {
+pub struct FrontEndOutput {
     /// The number of the text among the sources.
     pub main: FileId,
     /// The typed tree; complete even after errors.
@@ -369,7 +369,7 @@ pub struct Front {
 
 impl CompileRequest<'_> {
     /// Preprocesses, parses and checks a text.
-    pub fn front(self, text: Vec<u8>, context: &mut CompileContext) -> Front {
+    pub fn front(self, text: Vec<u8>, context: &mut CompileContext) -> FrontEndOutput {
         self.front_with(Headers::Whole, Arc::new(text), context).0
     }
 
@@ -379,7 +379,7 @@ impl CompileRequest<'_> {
         headers: Headers,
         text: Arc<Vec<u8>>,
         context: &mut CompileContext,
-    ) -> (Front, HeadersRead) {
+    ) -> (FrontEndOutput, HeadersRead) {
         let CompileContext { sources, names, sink } = context;
         let preprocessor = self.options.preprocessor_of_board();
         let main = sources.add_file(self.path.to_string_lossy(), Some(self.path), text, None);
@@ -392,7 +392,7 @@ impl CompileRequest<'_> {
         if self.options.division == Division::Firmware {
             unit.divide_by_firmware();
         }
-        (Front { main, unit }, read)
+        (FrontEndOutput { main, unit }, read)
     }
 }
 
@@ -411,7 +411,7 @@ pub fn generate(unit: &Unit, sources: &SourceMap, level: Level, timing: Timing, 
     for function in &unit.functions {
         let mut ir = lower::lower(unit, function, &definitions, timing, builder.signatures());
         optimize(&mut ir, level, &mut candidates, sources);
-        let about = About { symbol: ir.symbol, signature: ir.signature, end: ir.end };
+        let about = FunctionFacts { symbol: ir.symbol, signature: ir.signature, end: ir.end };
         generator.keeps_variables(level == Level::None);
         match generator.function(ir, builder.name(about.symbol)) {
             Ok(generated) => builder.function(about, generated),
@@ -446,7 +446,7 @@ pub fn generate_code(unit: &Unit, sources: &SourceMap, level: Level, sink: &mut 
         if level == Level::Fast {
             passes::unroll(&mut ir);
         }
-        let about = About { symbol: ir.symbol, signature: ir.signature, end: ir.end };
+        let about = FunctionFacts { symbol: ir.symbol, signature: ir.signature, end: ir.end };
         let name = builder.name(about.symbol).to_owned();
         match generator.function(&ir, builder.signatures(), &name) {
             Ok(words) => builder.words(about, words),
@@ -494,7 +494,7 @@ impl Compilation {
 
     /// Links the object, with the parts of the C library that it needs, for `thread`; linker errors are added to the
     /// diagnostics.
-    pub fn link(&mut self, thread: ThreadId, options: &Options) -> Option<Linked> {
+    pub fn link(&mut self, thread: ThreadId, options: &Options) -> Option<LinkedProgram> {
         link_units(std::slice::from_mut(self), thread, options)
     }
 }
@@ -516,7 +516,7 @@ fn unknown_version(firmware: &Firmware) -> Option<Diagnostic> {
 ///
 /// Missing symbols are added to the diagnostics of the unit that needs them, errors about the whole program to those of
 /// the first unit. The units' objects are consumed.
-pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options) -> Option<Linked> {
+pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options) -> Option<LinkedProgram> {
     if units.iter().any(|unit| unit.object.is_none()) {
         return None;
     }

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::fmt::{self, Write};
 
-use crate::link::{Linked, LinkedSymbol, Section};
+use crate::link::{LinkedProgram, LinkedSymbol, Section};
 use crate::typed::Linkage;
 
 /// The number of the largest symbols that are listed.
@@ -11,14 +11,14 @@ const LARGEST: usize = 10;
 
 /// The map as text.
 #[must_use]
-pub fn render(linked: &Linked) -> String {
+pub fn render(linked: &LinkedProgram) -> String {
     let mut out = String::new();
     let written = write(&mut out, linked);
     debug_assert!(written.is_ok(), "writing to a string cannot fail");
     out
 }
 
-fn write(out: &mut String, linked: &Linked) -> fmt::Result {
+fn write(out: &mut String, linked: &LinkedProgram) -> fmt::Result {
     writeln!(out, "program for thread {}, entry {}\n", linked.thread, linked.entry)?;
     writeln!(out, "section  address     bytes")?;
     for (name, address, size) in [
@@ -55,7 +55,7 @@ const fn title(section: Section) -> &'static str {
     }
 }
 
-fn write_symbol(out: &mut String, linked: &Linked, symbol: &LinkedSymbol) -> fmt::Result {
+fn write_symbol(out: &mut String, linked: &LinkedProgram, symbol: &LinkedSymbol) -> fmt::Result {
     let file = linked.files.get(symbol.place.file as usize).map_or("?", String::as_str);
     let linkage = if symbol.linkage == Linkage::Internal { " (static)" } else { "" };
     writeln!(

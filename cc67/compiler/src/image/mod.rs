@@ -21,14 +21,14 @@ use coff::{
 };
 use kmotiondef::GuestAddr;
 
-use crate::link::{Linked, LinkedFunction, LinkedSymbol, Section};
+use crate::link::{LinkedFunction, LinkedProgram, LinkedSymbol, Section};
 use crate::object::{base_type, class, function_type, statement, to_u16, whole_lines};
 
 /// Writes the image of a program.
 ///
 /// # Errors
 /// The program exceeds the limits of the format.
-pub fn write(linked: &Linked) -> Result<Vec<u8>, Error> {
+pub fn write(linked: &LinkedProgram) -> Result<Vec<u8>, Error> {
     write_as(Container::Coff, linked)
 }
 
@@ -36,7 +36,7 @@ pub fn write(linked: &Linked) -> Result<Vec<u8>, Error> {
 ///
 /// # Errors
 /// The program exceeds the limits of the format.
-pub fn write_as(container: Container, linked: &Linked) -> Result<Vec<u8>, Error> {
+pub fn write_as(container: Container, linked: &LinkedProgram) -> Result<Vec<u8>, Error> {
     let mut image = Image { container, ..bare(linked) };
     let mut table = SymbolTable::default();
     table.functions(linked);
@@ -65,12 +65,12 @@ pub fn write_as(container: Container, linked: &Linked) -> Result<Vec<u8>, Error>
 ///
 /// # Errors
 /// The program exceeds the limits of the format.
-pub fn write_stripped(linked: &Linked) -> Result<Vec<u8>, Error> {
+pub fn write_stripped(linked: &LinkedProgram) -> Result<Vec<u8>, Error> {
     bare(linked).write()
 }
 
 /// The image without symbols and line numbers.
-fn bare(linked: &Linked) -> Image {
+fn bare(linked: &LinkedProgram) -> Image {
     Image {
         container: Container::Coff,
         target: match linked.target {
@@ -85,7 +85,7 @@ fn bare(linked: &Linked) -> Image {
     }
 }
 
-fn header(linked: &Linked) -> Program {
+fn header(linked: &LinkedProgram) -> Program {
     Program {
         version_stamp: linked.firmware.version_stamp,
         text_size: linked.text.bytes.len() as u32,
@@ -97,7 +97,7 @@ fn header(linked: &Linked) -> Program {
     }
 }
 
-fn sections(linked: &Linked) -> Vec<coff::Section> {
+fn sections(linked: &LinkedProgram) -> Vec<coff::Section> {
     let section = |name: &str, address: GuestAddr, flags, contents| coff::Section {
         name: Name::from(name),
         physical: address.get(),
@@ -142,7 +142,7 @@ impl SymbolTable {
     }
 
     /// A file symbol for each source file, followed by the functions defined in it.
-    fn functions(&mut self, linked: &Linked) {
+    fn functions(&mut self, linked: &LinkedProgram) {
         for (file, path) in (0..).zip(&linked.files) {
             let name = path.rsplit(['/', '\\']).next().unwrap_or(path);
             self.push(name, 33, SectionNumber::DEBUG, SymbolType::default(), StorageClass::FILE, &[]);
@@ -154,7 +154,7 @@ impl SymbolTable {
     }
 
     /// The six entries of a function, and its lines.
-    fn function(&mut self, linked: &Linked, symbol: &LinkedSymbol, function: &LinkedFunction) {
+    fn function(&mut self, linked: &LinkedProgram, symbol: &LinkedSymbol, function: &LinkedFunction) {
         let text = SectionNumber(1);
         let end = symbol.address.offset(symbol.size).get();
         let next = self.entries + 6;
@@ -178,7 +178,7 @@ impl SymbolTable {
     }
 
     /// The program's objects and the firmware symbols that it refers to.
-    fn objects(&mut self, linked: &Linked) {
+    fn objects(&mut self, linked: &LinkedProgram) {
         for symbol in linked.symbols.iter().skip(linked.functions.len()) {
             let section = SectionNumber(if symbol.section == Section::Bss { 3 } else { 2 });
             let size = FunctionAux { size: symbol.size.into(), ..FunctionAux::default() };
@@ -207,7 +207,7 @@ impl SymbolTable {
     }
 
     /// The limits of the sections, from which the vendor's tools compute sizes.
-    fn markers(&mut self, linked: &Linked) {
+    fn markers(&mut self, linked: &LinkedProgram) {
         let text = linked.text.address.get();
         let text_end = text + linked.text.bytes.len() as u32;
         let data = linked.data.address.get();

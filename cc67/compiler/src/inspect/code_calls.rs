@@ -6,7 +6,7 @@ use c67x::{Op, Operand};
 
 use super::Inspection;
 use super::calls::{Calls, Node, firmware_name};
-use super::machine::{self, Called, Routine};
+use super::machine::{self, CallTarget, Routine};
 use crate::c67x::text::constant;
 
 impl Calls {
@@ -34,14 +34,14 @@ fn node(inspection: &Inspection, routines: &[Routine], code: &Routine, taken: &B
     };
     for call in code.blocks.iter().filter_map(|block| block.call) {
         match call {
-            Called::At(address) => {
+            CallTarget::At(address) => {
                 let address = machine::beyond(&inspection.image, address);
                 match numbered(routines, address) {
                     Some(index) => drop(node.calls.insert(index)),
                     None => drop(node.firmware.insert(firmware_name(inspection, address))),
                 }
             }
-            Called::Pointer => {
+            CallTarget::Pointer => {
                 node.calls_pointers = true;
                 node.through_pointers.extend(taken);
             }
@@ -62,7 +62,7 @@ fn addresses_taken(inspection: &Inspection, routines: &[Routine]) -> BTreeSet<us
     let mut taken: BTreeSet<usize> = words.filter_map(|word| numbered(routines, word)).collect();
     for code in routines {
         let called =
-            |address| code.blocks.iter().filter(|block| block.call == Some(Called::At(address))).count();
+            |address| code.blocks.iter().filter(|block| block.call == Some(CallTarget::At(address))).count();
         let constants = constants(code);
         for address in &constants {
             let uses = constants.iter().filter(|other| *other == address).count();

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::disassembly::Sources;
-use super::machine::{self, Block, Called, Routine};
+use super::machine::{self, Block, CallTarget, Routine};
 use super::{Inspection, calls::firmware_name};
 
 /// A loop: a jump back to a block before it.
@@ -82,10 +82,10 @@ impl Inspection {
         names.join(", ")
     }
 
-    fn callee(&self, call: Called) -> String {
+    fn callee(&self, call: CallTarget) -> String {
         match call {
-            Called::At(address) => firmware_name(self, machine::beyond(&self.image, address)),
-            Called::Pointer => "what a pointer calls".to_owned(),
+            CallTarget::At(address) => firmware_name(self, machine::beyond(&self.image, address)),
+            CallTarget::Pointer => "what a pointer calls".to_owned(),
         }
     }
 }

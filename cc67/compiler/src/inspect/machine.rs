@@ -46,12 +46,12 @@ pub(super) struct Block {
     pub(super) cycles: u32,
     pub(super) edges: Vec<Edge>,
     /// The target of the call at its end.
-    pub(super) call: Option<Called>,
+    pub(super) call: Option<CallTarget>,
 }
 
 /// The target of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Called {
+pub(super) enum CallTarget {
     /// The function at an address.
     At(u32),
     /// The address in a register.
@@ -167,12 +167,12 @@ impl Routine {
             let targets: Vec<usize> = match (self.target(*packet, inst), inst.branch()) {
                 (Some(target), _) => match self.at_address(target) {
                     Some(0) if self.sets_link(*packet) => {
-                        blocks[from].call = Some(Called::At(target));
+                        blocks[from].call = Some(CallTarget::At(target));
                         continue;
                     }
                     Some(target) => vec![number(target)],
                     None if self.sets_link(*packet) => {
-                        blocks[from].call = Some(Called::At(target));
+                        blocks[from].call = Some(CallTarget::At(target));
                         continue;
                     }
                     None => Vec::new(),
@@ -180,7 +180,7 @@ impl Routine {
                 (None, Some(Branch::Register(reg))) if reg != LINK && !self.keeps_link(*packet, reg) => {
                     if self.sets_link(*packet) {
                         blocks[from].call =
-                            Some(self.pointed(*packet, reg).map_or(Called::Pointer, Called::At));
+                            Some(self.pointed(*packet, reg).map_or(CallTarget::Pointer, CallTarget::At));
                         continue;
                     }
                     let mut targets: Vec<usize> =

@@ -16,14 +16,14 @@ use super::calls::{Calls, Node};
 #[derive(Clone, Debug)]
 enum Depth {
     /// This many bytes, and the next function on the deepest path.
-    Bytes(u32, Next),
+    Bytes(u32, DeepestCallee),
     /// A call leads to a function that is still being analysed, or whose depth is unknown.
     Unknown,
 }
 
 /// The callee at the deepest point.
 #[derive(Clone, Copy, Debug)]
-enum Next {
+enum DeepestCallee {
     Nothing,
     Function(usize),
     Firmware(&'static str, u32),
@@ -102,17 +102,17 @@ impl Depths<'_> {
     /// The depth of one function from the depths of its callees; a callee without a depth is still being analysed.
     fn of(&self, node: &Node, depths: &[Option<Depth>]) -> Depth {
         let Some(frame) = node.frame else { return Depth::Unknown };
-        let mut deepest = (0, Next::Nothing);
+        let mut deepest = (0, DeepestCallee::Nothing);
         let known = FIRMWARE_FUNCTIONS.iter().filter_map(|row| Some((row.name, row.attributes.stack?)));
         for (name, bytes) in known.filter(|(name, _)| self.is_real && node.firmware.contains(*name)) {
             if bytes > deepest.0 {
-                deepest = (bytes, Next::Firmware(name, bytes));
+                deepest = (bytes, DeepestCallee::Firmware(name, bytes));
             }
         }
         for callee in callees(node) {
             let Some(Some(Depth::Bytes(bytes, _))) = depths.get(callee) else { return Depth::Unknown };
-            if matches!(deepest.1, Next::Nothing) || *bytes > deepest.0 {
-                deepest = (*bytes, Next::Function(callee));
+            if matches!(deepest.1, DeepestCallee::Nothing) || *bytes > deepest.0 {
+                deepest = (*bytes, DeepestCallee::Function(callee));
             }
         }
         Depth::Bytes(frame.saturating_add(deepest.0), deepest.1)
@@ -127,20 +127,20 @@ fn callees(node: &Node) -> impl Iterator<Item = usize> {
 /// The names along the deepest path, `main (16) → read (120)`.
 fn chain(calls: &Calls, depths: &[Depth], start: usize) -> String {
     let mut names = Vec::new();
-    let mut next = Next::Function(start);
+    let mut next = DeepestCallee::Function(start);
     loop {
         match next {
-            Next::Nothing => break,
-            Next::Firmware(name, bytes) => {
+            DeepestCallee::Nothing => break,
+            DeepestCallee::Firmware(name, bytes) => {
                 names.push(format!("{name} (up to {bytes})"));
                 break;
             }
-            Next::Function(index) => {
+            DeepestCallee::Function(index) => {
                 let Some(node) = calls.nodes.get(index) else { break };
                 names.push(format!("{} ({})", node.name, node.frame.unwrap_or_default()));
                 next = match depths.get(index) {
                     Some(Depth::Bytes(_, next)) => *next,
-                    _ => Next::Nothing,
+                    _ => DeepestCallee::Nothing,
                 };
             }
         }

@@ -10,7 +10,7 @@ use super::inst::{Address, Base, BlockId, Callee, Class, InstKind, Operand, Term
 /// An error in a function, with its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{block}, instruction {index}: {message}")]
-pub struct Malformed {
+pub struct VerifyError {
     /// The block.
     pub block: BlockId,
     /// Index of the instruction; the number of instructions for the terminator.
@@ -23,7 +23,7 @@ pub struct Malformed {
 ///
 /// # Errors
 /// The first finding.
-pub fn verify(function: &Function, signatures: &Signatures) -> Result<(), Malformed> {
+pub fn verify(function: &Function, signatures: &Signatures) -> Result<(), VerifyError> {
     let mut placed = EntitySet::new();
     for &block in &function.layout {
         placed.insert(block);
@@ -32,10 +32,10 @@ pub fn verify(function: &Function, signatures: &Signatures) -> Result<(), Malfor
     for &block in &function.layout {
         let data = &function.blocks[block];
         for (index, inst) in data.insts.iter().enumerate() {
-            checker.inst(&inst.kind).map_err(|message| Malformed { block, index, message })?;
+            checker.inst(&inst.kind).map_err(|message| VerifyError { block, index, message })?;
         }
         let index = data.insts.len();
-        checker.terminator(&data.terminator).map_err(|message| Malformed { block, index, message })?;
+        checker.terminator(&data.terminator).map_err(|message| VerifyError { block, index, message })?;
     }
     Ok(())
 }

@@ -49,7 +49,7 @@ pub struct SectionAddresses {
 
 /// A program with final addresses.
 #[derive(Clone, Debug)]
-pub struct Linked {
+pub struct LinkedProgram {
     /// The thread for which it is linked.
     pub thread: ThreadId,
     /// The target of its code.
@@ -59,7 +59,7 @@ pub struct Linked {
     /// The initialised data.
     pub data: LinkedSection,
     /// The uninitialised data.
-    pub bss: Uninitialized,
+    pub bss: UninitializedSection,
     /// The address at which a thread begins to execute it: `main`, or the words before bytecode, which lead the
     /// simulated board to `main` and make a real processor return.
     pub entry: GuestAddr,
@@ -99,7 +99,7 @@ pub struct LinkedSection {
 
 /// A section that a load clears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Uninitialized {
+pub struct UninitializedSection {
     /// Its start address.
     pub address: GuestAddr,
     /// Its size in bytes.
@@ -139,7 +139,7 @@ pub struct LinkedSymbol {
 /// A function of the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkedFunction {
-    /// Its part of [`Linked::lines`].
+    /// Its part of [`LinkedProgram::lines`].
     pub lines: std::ops::Range<usize>,
     /// Bytes of its frame in guest memory.
     pub frame: u32,
@@ -154,7 +154,7 @@ pub struct LinkedFunction {
 pub struct LinkedLine {
     /// The address.
     pub address: GuestAddr,
-    /// The line; the file is an index into [`Linked::files`].
+    /// The line; the file is an index into [`LinkedProgram::files`].
     pub place: SourceLine,
     /// The column, counted from 1; 0 if the object does not have it.
     pub column: u32,
@@ -177,7 +177,7 @@ pub struct Import {
 ///
 /// # Errors
 /// All errors that prevent linking.
-pub fn link(objects: &[Object], options: &Options<'_>) -> Result<Linked, Vec<LinkError>> {
+pub fn link(objects: &[Object], options: &Options<'_>) -> Result<LinkedProgram, Vec<LinkError>> {
     processor::check_targets(objects)?;
     let names = names::Names::collect(objects)?;
     let reached = reach::reach(objects, &names, options)?;
@@ -188,12 +188,12 @@ pub fn link(objects: &[Object], options: &Options<'_>) -> Result<Linked, Vec<Lin
     let placed = place::place(objects, &names, &reached, &layout, code, &options.addresses);
     let warnings = place::check_size(&placed, base, board.programs())?;
     let addresses = text::Addresses { base: code, reached: &reached, placed: &placed };
-    Ok(Linked {
+    Ok(LinkedProgram {
         thread: options.thread,
         target: processor::target(objects),
         text: LinkedSection { address: base, bytes: text::text(objects, &layout, &addresses)? },
         data: LinkedSection { address: placed.data_address, bytes: text::data(objects, &addresses) },
-        bss: Uninitialized { address: placed.bss_address, size: placed.bss_size },
+        bss: UninitializedSection { address: placed.bss_address, size: placed.bss_size },
         entry: if layout.guard > 0 { base } else { placed.function(reached.main) },
         firmware: LinkedFirmware {
             version_stamp: options.firmware.version_stamp(),

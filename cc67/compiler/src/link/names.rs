@@ -8,7 +8,7 @@ use crate::typed::{Linkage, SymbolId};
 
 /// A definition in one of the objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Defined {
+pub(super) enum DefinitionIndex {
     /// A function: object, index.
     Function(usize, u32),
     /// An initialised object: object, index.
@@ -19,7 +19,7 @@ pub(super) enum Defined {
 
 /// An object without initialiser; one for all tentative definitions of an external name.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Uninitialized {
+pub(super) struct UninitializedObject {
     /// The object that defines it (first).
     pub(super) object: usize,
     /// The symbol there.
@@ -33,11 +33,11 @@ pub(super) struct Uninitialized {
 /// All definitions.
 #[derive(Debug, Default)]
 pub(super) struct Names<'a> {
-    external: BTreeMap<&'a str, Defined>,
+    external: BTreeMap<&'a str, DefinitionIndex>,
     /// The uninitialised objects of a unit itself, by object and symbol.
     internal: BTreeMap<(usize, SymbolId), usize>,
     /// Uninitialised objects, `static` ones first.
-    pub(super) uninitialized: Vec<Uninitialized>,
+    pub(super) uninitialized: Vec<UninitializedObject>,
 }
 
 impl<'a> Names<'a> {
@@ -74,10 +74,10 @@ impl<'a> Names<'a> {
         let known = self.external.get(symbol.name.as_str()).copied();
         let new = match (symbol.definition, known) {
             (Definition::None, _)
-            | (Definition::Tentative, Some(Defined::Function(..) | Defined::Data(..))) => {
+            | (Definition::Tentative, Some(DefinitionIndex::Function(..) | DefinitionIndex::Data(..))) => {
                 return None;
             }
-            (Definition::Tentative, Some(Defined::Bss(index))) => {
+            (Definition::Tentative, Some(DefinitionIndex::Bss(index))) => {
                 let known = &mut self.uninitialized[index];
                 known.size = known.size.max(symbol.size);
                 known.align = known.align.max(symbol.align);
@@ -85,9 +85,9 @@ impl<'a> Names<'a> {
             }
             (Definition::Tentative, None) => {
                 self.uninitialized.push(uninitialized(object, id, symbol));
-                Defined::Bss(self.uninitialized.len() - 1)
+                DefinitionIndex::Bss(self.uninitialized.len() - 1)
             }
-            (_, Some(first @ (Defined::Function(..) | Defined::Data(..)))) => {
+            (_, Some(first @ (DefinitionIndex::Function(..) | DefinitionIndex::Data(..)))) => {
                 let (unit, place) = (&objects[object], symbol.place);
                 let kind = LinkErrorKind::DefinedTwice {
                     name: symbol.name.clone(),
@@ -96,19 +96,21 @@ impl<'a> Names<'a> {
                 };
                 return Some(LinkError { object: Some(object), span: symbol.span, kind, users: Vec::new() });
             }
-            (Definition::Function(index), _) => Defined::Function(object, index),
-            (Definition::Data(index), _) => Defined::Data(object, index),
+            (Definition::Function(index), _) => DefinitionIndex::Function(object, index),
+            (Definition::Data(index), _) => DefinitionIndex::Data(object, index),
         };
         self.external.insert(&symbol.name, new);
         None
     }
 
     /// File and line of a definition.
-    fn place_of(&self, objects: &[Object], defined: Defined) -> String {
+    fn place_of(&self, objects: &[Object], defined: DefinitionIndex) -> String {
         let (object, symbol) = match defined {
-            Defined::Function(object, index) => (object, objects[object].functions[index as usize].symbol),
-            Defined::Data(object, index) => (object, objects[object].objects[index as usize].symbol),
-            Defined::Bss(index) => {
+            DefinitionIndex::Function(object, index) => {
+                (object, objects[object].functions[index as usize].symbol)
+            }
+            DefinitionIndex::Data(object, index) => (object, objects[object].objects[index as usize].symbol),
+            DefinitionIndex::Bss(index) => {
                 let found = &self.uninitialized[index];
                 (found.object, found.symbol)
             }
@@ -117,13 +119,15 @@ impl<'a> Names<'a> {
     }
 
     /// Returns the definition of an object's symbol inside the program; `None` if no object defines it.
-    pub(super) fn find(&self, object: usize, id: SymbolId, symbol: &Symbol) -> Option<Defined> {
+    pub(super) fn find(&self, object: usize, id: SymbolId, symbol: &Symbol) -> Option<DefinitionIndex> {
         match (symbol.linkage, symbol.definition) {
             (Linkage::External, _) => self.external.get(symbol.name.as_str()).copied(),
-            (Linkage::Internal, Definition::Function(index)) => Some(Defined::Function(object, index)),
-            (Linkage::Internal, Definition::Data(index)) => Some(Defined::Data(object, index)),
+            (Linkage::Internal, Definition::Function(index)) => {
+                Some(DefinitionIndex::Function(object, index))
+            }
+            (Linkage::Internal, Definition::Data(index)) => Some(DefinitionIndex::Data(object, index)),
             (Linkage::Internal, Definition::Tentative) => {
-                self.internal.get(&(object, id)).map(|index| Defined::Bss(*index))
+                self.internal.get(&(object, id)).map(|index| DefinitionIndex::Bss(*index))
             }
             (Linkage::Internal, Definition::None) => None,
         }
@@ -136,7 +140,7 @@ impl<'a> Names<'a> {
 
     /// The function `main`, which may be `static`.
     pub(super) fn main(&self, objects: &[Object]) -> Option<(usize, u32)> {
-        if let Some(Defined::Function(object, index)) = self.external.get("main") {
+        if let Some(DefinitionIndex::Function(object, index)) = self.external.get("main") {
             return Some((*object, *index));
         }
         objects.iter().enumerate().find_map(|(object, unit)| {
@@ -148,6 +152,6 @@ impl<'a> Names<'a> {
     }
 }
 
-fn uninitialized(object: usize, id: SymbolId, symbol: &Symbol) -> Uninitialized {
-    Uninitialized { object, symbol: id, size: symbol.size, align: symbol.align }
+fn uninitialized(object: usize, id: SymbolId, symbol: &Symbol) -> UninitializedObject {
+    UninitializedObject { object, symbol: id, size: symbol.size, align: symbol.align }
 }

@@ -5,7 +5,7 @@ use kmotiondef::{GuestAddr, ThreadId};
 
 use super::error::{LinkError, LinkErrorKind, LinkWarning};
 use super::names::Names;
-use super::reach::Reached;
+use super::reach::ReachableParts;
 use super::text::TextLayout;
 use super::{LinkedSymbol, Section, SectionAddresses};
 use crate::object::{Object, Symbol};
@@ -17,7 +17,7 @@ const NAMED: usize = 5;
 
 /// The addresses.
 #[derive(Debug)]
-pub(super) struct Placed {
+pub(super) struct Placement {
     pub(super) data_address: GuestAddr,
     pub(super) data_size: u32,
     pub(super) bss_address: GuestAddr,
@@ -31,7 +31,7 @@ pub(super) struct Placed {
     pub(super) symbols: Vec<LinkedSymbol>,
 }
 
-impl Placed {
+impl Placement {
     /// The address of a function, given by object and index.
     pub(super) fn function(&self, (object, index): (usize, u32)) -> GuestAddr {
         self.functions[object][index as usize]
@@ -42,14 +42,14 @@ impl Placed {
 pub(super) fn place(
     objects: &[Object],
     names: &Names<'_>,
-    reached: &Reached,
+    reached: &ReachableParts,
     layout: &TextLayout,
     base: GuestAddr,
     addresses: &SectionAddresses,
-) -> Placed {
+) -> Placement {
     let text_end = base.get().saturating_add(layout.words * layout.word_bytes);
     let data_address = addresses.data.unwrap_or_else(|| behind(text_end));
-    let mut placed = Placed {
+    let mut placed = Placement {
         data_address,
         data_size: 0,
         bss_address: data_address,
@@ -79,8 +79,8 @@ fn behind(end: u32) -> GuestAddr {
     GuestAddr::new(end.checked_next_multiple_of(SECTION_ALIGN).unwrap_or(u32::MAX))
 }
 
-impl Placed {
-    fn data(&mut self, objects: &[Object], reached: &Reached, layout: &TextLayout) {
+impl Placement {
+    fn data(&mut self, objects: &[Object], reached: &ReachableParts, layout: &TextLayout) {
         let mut at = self.data_address.get();
         for (index, object) in objects.iter().enumerate() {
             let needed = object.objects.iter().enumerate().filter(|(item, _)| reached.data[index][*item]);
@@ -101,7 +101,7 @@ impl Placed {
         &mut self,
         objects: &[Object],
         names: &Names<'_>,
-        reached: &Reached,
+        reached: &ReachableParts,
         layout: &TextLayout,
         start: GuestAddr,
     ) {
@@ -141,7 +141,7 @@ fn linked(
 /// Compares the program's end with the available space (specification, `dialect.md` section 7). A program whose text is
 /// not in the space of the board's user programs is for another board.
 pub(super) fn check_size(
-    placed: &Placed,
+    placed: &Placement,
     text: GuestAddr,
     spaces: ProgramSpaces,
 ) -> Result<Vec<LinkWarning>, Vec<LinkError>> {
@@ -172,7 +172,7 @@ pub(super) fn check_size(
 }
 
 /// The largest symbols, `name (bytes)`.
-fn largest(placed: &Placed) -> Vec<String> {
+fn largest(placed: &Placement) -> Vec<String> {
     let mut symbols: Vec<&LinkedSymbol> = placed.symbols.iter().collect();
     symbols.sort_by_key(|symbol| std::cmp::Reverse(symbol.size));
     symbols.iter().take(NAMED).map(|symbol| format!("{} ({})", symbol.name, symbol.size)).collect()

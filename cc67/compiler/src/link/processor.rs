@@ -7,7 +7,7 @@
 use kmotiondef::GuestAddr;
 
 use super::error::{LinkError, LinkErrorKind};
-use super::reach::{Reached, Target};
+use super::reach::{ReachableParts, Target};
 use super::text::{Addresses, TextLayout};
 use crate::c67x::ALIGN;
 use crate::c67x::text::{branch, far_jump, half};
@@ -37,7 +37,7 @@ pub(super) fn check_targets(objects: &[Object]) -> Result<(), Vec<LinkError>> {
 
 impl TextLayout {
     /// Lays out the functions that are needed, after them the jumps.
-    pub(super) fn processor(&mut self, objects: &[Object], reached: &Reached, base: GuestAddr) {
+    pub(super) fn processor(&mut self, objects: &[Object], reached: &ReachableParts, base: GuestAddr) {
         self.word_bytes = WORD;
         self.guard = 0;
         let mut word = 0_u32;

@@ -10,7 +10,7 @@ use kmotiondef::GuestAddr;
 use kmotiondef::jumps::JumpFunction;
 
 use super::error::{LinkError, LinkErrorKind};
-use super::names::{Defined, Names};
+use super::names::{DefinitionIndex, Names};
 use super::{Import, Options};
 use crate::firmware::{FirmwareKind, FirmwareSymbol};
 use crate::ir::function::Signature;
@@ -27,7 +27,7 @@ pub(super) enum Target {
     #[default]
     Unknown,
     /// A definition of the program.
-    Program(Defined),
+    Program(DefinitionIndex),
     /// A function of the firmware.
     Function(GuestAddr, Option<Signature>),
     /// A variable of the firmware.
@@ -36,7 +36,7 @@ pub(super) enum Target {
 
 /// The parts of the program.
 #[derive(Debug)]
-pub(super) struct Reached {
+pub(super) struct ReachableParts {
     /// The targets of each object's symbols.
     pub(super) targets: Vec<SecondaryMap<SymbolId, Target>>,
     /// True for the functions of each object that are needed.
@@ -56,13 +56,13 @@ pub(super) fn reach(
     objects: &[Object],
     names: &Names<'_>,
     options: &Options<'_>,
-) -> Result<Reached, Vec<LinkError>> {
+) -> Result<ReachableParts, Vec<LinkError>> {
     let main = names.main(objects);
     let mut walk = Walk {
         objects,
         names,
         options,
-        reached: Reached {
+        reached: ReachableParts {
             targets: objects.iter().map(|_| SecondaryMap::new()).collect(),
             functions: objects.iter().map(|object| vec![false; object.functions.len()]).collect(),
             data: objects.iter().map(|object| vec![false; object.objects.len()]).collect(),
@@ -75,7 +75,7 @@ pub(super) fn reach(
         pending: VecDeque::new(),
     };
     if let Some((object, index)) = main {
-        walk.need(Defined::Function(object, index));
+        walk.need(DefinitionIndex::Function(object, index));
     }
     if !options.gc || main.is_none() {
         walk.need_all();
@@ -97,27 +97,28 @@ struct Walk<'a> {
     objects: &'a [Object],
     names: &'a Names<'a>,
     options: &'a Options<'a>,
-    reached: Reached,
+    reached: ReachableParts,
     imports: BTreeMap<&'a str, Import>,
     missing: BTreeMap<&'a str, LinkError>,
     /// Definitions whose relocations have not been followed yet.
-    pending: VecDeque<Defined>,
+    pending: VecDeque<DefinitionIndex>,
 }
 
 impl Walk<'_> {
     fn need_all(&mut self) {
         for (object, unit) in self.objects.iter().enumerate() {
-            (0..unit.functions.len()).for_each(|index| self.need(Defined::Function(object, index as u32)));
-            (0..unit.objects.len()).for_each(|index| self.need(Defined::Data(object, index as u32)));
+            (0..unit.functions.len())
+                .for_each(|index| self.need(DefinitionIndex::Function(object, index as u32)));
+            (0..unit.objects.len()).for_each(|index| self.need(DefinitionIndex::Data(object, index as u32)));
         }
         self.reached.bss.fill(true);
     }
 
-    fn need(&mut self, defined: Defined) {
+    fn need(&mut self, defined: DefinitionIndex) {
         let needed = match defined {
-            Defined::Function(object, index) => &mut self.reached.functions[object][index as usize],
-            Defined::Data(object, index) => &mut self.reached.data[object][index as usize],
-            Defined::Bss(index) => &mut self.reached.bss[index],
+            DefinitionIndex::Function(object, index) => &mut self.reached.functions[object][index as usize],
+            DefinitionIndex::Data(object, index) => &mut self.reached.data[object][index as usize],
+            DefinitionIndex::Bss(index) => &mut self.reached.bss[index],
         };
         if !*needed {
             *needed = true;
@@ -128,21 +129,21 @@ impl Walk<'_> {
     fn run(&mut self) {
         while let Some(defined) = self.pending.pop_front() {
             match defined {
-                Defined::Function(object, index) => {
+                DefinitionIndex::Function(object, index) => {
                     let unit = &self.objects[object];
                     let range = unit.functions[index as usize].relocations.clone();
                     for relocation in &unit.relocations[range.start as usize..range.end as usize] {
                         self.refer(object, relocation.symbol, User::Word(index, relocation.word));
                     }
                 }
-                Defined::Data(object, index) => {
+                DefinitionIndex::Data(object, index) => {
                     let unit = &self.objects[object];
                     let range = unit.objects[index as usize].relocations.clone();
                     for relocation in &unit.data_relocations[range.start as usize..range.end as usize] {
                         self.refer(object, relocation.symbol, User::Data(index));
                     }
                 }
-                Defined::Bss(_) => {}
+                DefinitionIndex::Bss(_) => {}
             }
         }
     }

@@ -3,7 +3,7 @@
 use kmotiondef::timing::Timing;
 use kmotiondef::{GuestAddr, ThreadId};
 
-use super::{LinkError, Linked, Options, Section, SectionAddresses, link};
+use super::{LinkError, LinkedProgram, Options, Section, SectionAddresses, link};
 use crate::diag::Sink;
 use crate::driver::generate;
 use crate::firmware::{FirmwareKind, FirmwareSymbol, FirmwareSymbols};
@@ -37,23 +37,23 @@ fn object(source: &str) -> Object {
     generate(&unit, &sources, Level::Full, Timing::Fast, &mut Sink::new())
 }
 
-fn try_link(sources: &[&str], thread: i32, gc: bool) -> Result<Linked, Vec<LinkError>> {
+fn try_link(sources: &[&str], thread: i32, gc: bool) -> Result<LinkedProgram, Vec<LinkError>> {
     let objects: Vec<Object> = sources.iter().map(|source| object(source)).collect();
     let thread = ThreadId::new(thread).expect("1 to 7");
     link(&objects, &Options { thread, firmware: &Fake, gc, addresses: SectionAddresses::default() })
 }
 
-fn linked(sources: &[&str]) -> Linked {
+fn linked(sources: &[&str]) -> LinkedProgram {
     try_link(sources, 1, true).expect("links")
 }
 
 /// The address of a symbol.
-fn address(linked: &Linked, name: &str) -> u32 {
+fn address(linked: &LinkedProgram, name: &str) -> u32 {
     linked.symbols.iter().find(|symbol| symbol.name == name).map_or(0, |symbol| symbol.address.get())
 }
 
 /// The word in the data at the symbol `name`.
-fn word(linked: &Linked, name: &str) -> u32 {
+fn word(linked: &LinkedProgram, name: &str) -> u32 {
     let at = (address(linked, name) - linked.data.address.get()) as usize;
     linked.data.bytes[at..].first_chunk().map_or(0, |bytes| u32::from_le_bytes(*bytes))
 }

@@ -7,12 +7,12 @@ use kmotiondef::GuestAddr;
 use vm::guard;
 
 use super::error::{LinkError, LinkErrorKind};
-use super::names::Defined;
-use super::place::Placed;
+use super::names::DefinitionIndex;
+use super::place::Placement;
 use super::processor;
-use super::reach::{Reached, Target};
+use super::reach::{ReachableParts, Target};
 use super::{LinkedFunction, LinkedLine};
-use crate::bytecode::text::{Numbers, call, call_firmware};
+use crate::bytecode::text::{Renumbering, call, call_firmware};
 use crate::bytecode::{WORD, head};
 use crate::ir::function::{Signature, Signatures};
 use crate::ir::inst::SignatureId;
@@ -44,7 +44,7 @@ pub(super) struct TextLayout {
 impl TextLayout {
     pub(super) fn new(
         objects: &[Object],
-        reached: &Reached,
+        reached: &ReachableParts,
         base: GuestAddr,
     ) -> Result<Self, Vec<LinkError>> {
         let mut layout = Self { word_bytes: WORD as u32, guard: guard::BYTES as u32, ..Self::default() };
@@ -55,7 +55,7 @@ impl TextLayout {
         }
         layout.share_pool(objects);
         layout.share_signatures(objects, reached)?;
-        let mut word = head::words(&layout.pool, layout.signatures.as_slice());
+        let mut word = head::word_count(&layout.pool, layout.signatures.as_slice());
         for (object, unit) in objects.iter().enumerate() {
             let needed =
                 unit.functions.iter().enumerate().filter(|(index, _)| reached.functions[object][*index]);
@@ -107,7 +107,11 @@ impl TextLayout {
     }
 
     /// Numbers the signatures of the objects and of the firmware functions they call.
-    fn share_signatures(&mut self, objects: &[Object], reached: &Reached) -> Result<(), Vec<LinkError>> {
+    fn share_signatures(
+        &mut self,
+        objects: &[Object],
+        reached: &ReachableParts,
+    ) -> Result<(), Vec<LinkError>> {
         for object in objects {
             let own = object.signatures.as_slice().iter();
             let numbers = own.map(|signature| self.signatures.intern(signature).as_u32() as u16).collect();
@@ -134,8 +138,8 @@ impl TextLayout {
 pub(super) struct Addresses<'a> {
     /// The address of the first word.
     pub(super) base: GuestAddr,
-    pub(super) reached: &'a Reached,
-    pub(super) placed: &'a Placed,
+    pub(super) reached: &'a ReachableParts,
+    pub(super) placed: &'a Placement,
 }
 
 impl Addresses<'_> {
@@ -143,9 +147,11 @@ impl Addresses<'_> {
         match *target {
             Target::Unknown => GuestAddr::NULL,
             Target::Function(address, _) | Target::Variable(address) => address,
-            Target::Program(Defined::Function(object, index)) => self.placed.function((object, index)),
-            Target::Program(Defined::Data(object, index)) => self.placed.data[object][index as usize],
-            Target::Program(Defined::Bss(index)) => self.placed.bss[index],
+            Target::Program(DefinitionIndex::Function(object, index)) => {
+                self.placed.function((object, index))
+            }
+            Target::Program(DefinitionIndex::Data(object, index)) => self.placed.data[object][index as usize],
+            Target::Program(DefinitionIndex::Bss(index)) => self.placed.bss[index],
         }
     }
 }
@@ -183,9 +189,9 @@ impl Writer<'_> {
         let unit = &self.objects[object];
         let relocations = function.relocations.start as usize..function.relocations.end as usize;
         let mut relocations = unit.relocations[relocations].iter().peekable();
-        let numbers = Numbers {
+        let numbers = Renumbering {
             // Labels count from the beginning of the object's text.
-            moved: word.wrapping_sub(function.words.start),
+            word_offset: word.wrapping_sub(function.words.start),
             pool: &self.layout.pool_numbers[object],
             signatures: &self.layout.signature_numbers[object],
         };
@@ -232,7 +238,7 @@ impl Writer<'_> {
             Err(LinkErrorKind::CallMismatch { name, called, defined })
         };
         match &self.addresses.reached.targets[object][relocation.symbol] {
-            Target::Program(Defined::Function(unit, index)) => {
+            Target::Program(DefinitionIndex::Function(unit, index)) => {
                 let function = &self.objects[*unit].functions[*index as usize];
                 check(self.objects[*unit].signatures.get(function.signature))?;
                 let address = self.addresses.placed.function((*unit, *index));

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use kmotiondef::firmware::row_named;
-use kmotiondef::function::Polled;
+use kmotiondef::function::PolledState;
 
 use super::format::called_firmware;
 use super::program::AnalysedProgram;
@@ -153,9 +153,9 @@ fn answer(program: &AnalysedProgram<'_>, function: &Function, value: ExprId) -> 
     let ExprKind::Call(call) = &function.exprs[value].kind else { return None };
     let name = called_firmware(program.unit, call)?;
     let (least, most, help) = match row_named(name)?.attributes.polls? {
-        Polled::Bit => (0, 1, "a bit is 0 or 1"),
-        Polled::Motion => (-1, 1, "1 is done, 0 in motion, -1 disabled"),
-        Polled::Time | Polled::Path | Polled::Recording | Polled::Lock => return None,
+        PolledState::Bit => (0, 1, "a bit is 0 or 1"),
+        PolledState::Motion => (-1, 1, "1 is done, 0 in motion, -1 disabled"),
+        PolledState::Time | PolledState::Path | PolledState::Recording | PolledState::Lock => return None,
     };
     Some(Range { of: name.to_owned(), least, most, help })
 }

@@ -1,7 +1,7 @@
 //! Statements that compute a value and drop it.
 
 use kmotiondef::firmware::row_named;
-use kmotiondef::function::Polled;
+use kmotiondef::function::PolledState;
 
 use super::format::called_firmware;
 use super::program::AnalysedProgram;
@@ -33,7 +33,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
 /// Reports whether a firmware function has no effect but its result.
 fn only_answers(name: &str) -> bool {
     let polls = row_named(name).and_then(|row| row.attributes.polls);
-    matches!(polls, Some(Polled::Bit | Polled::Motion | Polled::Path | Polled::Recording))
+    matches!(polls, Some(PolledState::Bit | PolledState::Motion | PolledState::Path | PolledState::Recording))
 }
 
 /// The message for an expression statement whose value is not used; `is_function` if it is just the name of a function.

@@ -97,7 +97,7 @@ const fn is_power(factor: i64) -> bool {
 
 /// The access of the vendor's code to a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Reach {
+enum VendorAccess {
     /// A local, or any place at a constant address.
     Local,
     /// A global, or an address that is a number; accesses may wait for memory.
@@ -108,7 +108,7 @@ enum Reach {
 
 /// The location of an operand in the vendor's code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Nature {
+enum VendorOperand {
     /// A constant or a named variable, loaded when it is needed.
     Simple,
     /// A load through an address that is in a register.
@@ -160,25 +160,27 @@ impl Lowering<'_> {
             || BuiltIn.find(&symbol.name).is_none_or(|found| found.address.get() >= SDRAM)
     }
 
-    fn reach_local(&self, local: LocalId, offset: u32, steps: i32) -> Reach {
+    fn reach_local(&self, local: LocalId, offset: u32, steps: i32) -> VendorAccess {
         let steps = cost_table::STEP * (steps + i32::from(offset != 0));
         if self.function.locals[local].by_pointer {
             let fixed = 7 + steps;
-            return Reach::Through { fixed, waits: false };
+            return VendorAccess::Through { fixed, waits: false };
         }
         match steps {
-            0 => Reach::Local,
-            _ => Reach::Through { fixed: cost_table::LOCAL_ADDRESS + steps, waits: false },
+            0 => VendorAccess::Local,
+            _ => VendorAccess::Through { fixed: cost_table::LOCAL_ADDRESS + steps, waits: false },
         }
     }
 
     /// The access to a place; follows it as [`Lowering::address`] does.
-    fn reach(&self, place: PlaceId) -> Reach {
+    fn reach(&self, place: PlaceId) -> VendorAccess {
         let (mut place, mut steps) = (place, 0);
         loop {
             let pointer = match self.function.places[place].kind {
                 PlaceKind::Local(local, offset) => return self.reach_local(local, offset, steps),
-                PlaceKind::Symbol(symbol, _) => return Reach::Global { waits: self.symbol_waits(symbol) },
+                PlaceKind::Symbol(symbol, _) => {
+                    return VendorAccess::Global { waits: self.symbol_waits(symbol) };
+                }
                 PlaceKind::Bits(unit, _) => {
                     place = unit;
                     continue;
@@ -192,10 +194,10 @@ impl Lowering<'_> {
             steps += more;
             match self.function.exprs[base].kind {
                 ExprKind::Address(inner) => place = inner,
-                ExprKind::Int(_) => return Reach::Global { waits: false },
+                ExprKind::Int(_) => return VendorAccess::Global { waits: false },
                 _ => {
                     let fixed = cost_table::STEP * steps;
-                    return Reach::Through { fixed, waits: self.pointee_waits(base) };
+                    return VendorAccess::Through { fixed, waits: self.pointee_waits(base) };
                 }
             }
         }
@@ -228,7 +230,7 @@ impl Lowering<'_> {
         loop {
             match self.function.exprs[pointer].kind {
                 ExprKind::Binary(_, base, _) | ExprKind::Convert(base) => pointer = base,
-                ExprKind::Address(place) if matches!(self.reach(place), Reach::Local) => return false,
+                ExprKind::Address(place) if matches!(self.reach(place), VendorAccess::Local) => return false,
                 ExprKind::Address(place) | ExprKind::Load(place) => {
                     return match self.function.places[place].kind {
                         PlaceKind::Symbol(symbol, _) => self.symbol_waits(symbol),
@@ -247,15 +249,15 @@ impl Lowering<'_> {
         }
         let class = self.class_or_int(self.function.places[place].ty);
         let waits = match self.reach(place) {
-            Reach::Local => {
+            VendorAccess::Local => {
                 self.cost(cost_table::either(class, 7, 8));
                 false
             }
-            Reach::Global { waits } => {
+            VendorAccess::Global { waits } => {
                 self.cost(cost_table::either(class, 7, 8));
                 waits
             }
-            Reach::Through { fixed, waits } => {
+            VendorAccess::Through { fixed, waits } => {
                 self.cost(fixed + cost_table::either(class, 5, 6));
                 waits
             }
@@ -268,7 +270,7 @@ impl Lowering<'_> {
 
     /// Charges the address of a place that is accessed more than once, without the expressions in it.
     fn charge_reach(&mut self, place: PlaceId) {
-        if let Reach::Through { fixed, .. } = self.reach(place) {
+        if let VendorAccess::Through { fixed, .. } = self.reach(place) {
             self.cost(fixed);
         }
     }
@@ -279,9 +281,9 @@ impl Lowering<'_> {
             return;
         }
         self.cost(match self.reach(place) {
-            Reach::Local => cost_table::LOCAL_ADDRESS,
-            Reach::Global { .. } => cost_table::GLOBAL_ADDRESS,
-            Reach::Through { fixed, .. } => fixed,
+            VendorAccess::Local => cost_table::LOCAL_ADDRESS,
+            VendorAccess::Global { .. } => cost_table::GLOBAL_ADDRESS,
+            VendorAccess::Through { fixed, .. } => fixed,
         });
     }
 
@@ -289,15 +291,15 @@ impl Lowering<'_> {
     fn charge_store(&mut self, place: PlaceId) {
         let class = self.class_or_int(self.function.places[place].ty);
         let waits = match self.reach(place) {
-            Reach::Local => {
+            VendorAccess::Local => {
                 self.cost(cost_table::either(class, 3, 5));
                 false
             }
-            Reach::Global { waits } => {
+            VendorAccess::Global { waits } => {
                 self.cost(cost_table::either(class, 3, 4));
                 waits
             }
-            Reach::Through { waits, .. } => {
+            VendorAccess::Through { waits, .. } => {
                 self.cost(cost_table::either(class, 1, 2));
                 waits
             }
@@ -309,7 +311,7 @@ impl Lowering<'_> {
     }
 
     fn is_through(&self, place: PlaceId) -> bool {
-        matches!(self.reach(place), Reach::Through { .. })
+        matches!(self.reach(place), VendorAccess::Through { .. })
     }
 
     /// Charges an assignment, without its value.
@@ -322,12 +324,12 @@ impl Lowering<'_> {
             let class = self.class_of(value);
             if self.calls(value) {
                 self.cost(cost_table::SAVE_ADDRESS);
-            } else if class == Class::F32 && self.nature(value) == Nature::Computed {
+            } else if class == Class::F32 && self.nature(value) == VendorOperand::Computed {
                 self.cost(cost_table::CROWDED_SINGLE);
             }
             // As recorded: `a[i] = 16 - i` into doubles takes one cycle more than `a[i] = i`.
             let is_converted = matches!(self.function.exprs[value].kind,
-                ExprKind::Convert(inner) if class == Class::F64 && self.nature(inner) == Nature::Computed);
+                ExprKind::Convert(inner) if class == Class::F64 && self.nature(inner) == VendorOperand::Computed);
             self.cost(i32::from(is_converted) * cost_table::MOVE);
         }
         self.charge_store(place);
@@ -349,7 +351,7 @@ impl Lowering<'_> {
         if update.result == typed::UpdateResult::Old {
             self.cost(cost_table::KEEP_OLD);
         }
-        let is_element = self.nature(update.operand) == Nature::Element;
+        let is_element = self.nature(update.operand) == VendorOperand::Element;
         self.cost(match computed {
             Class::F64 if is_element => cost_table::CROWDED,
             Class::F32 if is_element => cost_table::CROWDED_SINGLE,
@@ -394,11 +396,13 @@ impl Lowering<'_> {
             return;
         }
         self.cost(match self.nature(a) {
-            Nature::Simple => 0,
-            Nature::Element => cost_table::SAVE_ADDRESS,
+            VendorOperand::Simple => 0,
+            VendorOperand::Element => cost_table::SAVE_ADDRESS,
             // A result is saved directly from its register, without being moved first.
-            Nature::Result => cost_table::save(self.class_of(a)) - cost_table::result(self.class_of(a)),
-            Nature::Computed => cost_table::save(self.class_of(a)),
+            VendorOperand::Result => {
+                cost_table::save(self.class_of(a)) - cost_table::result(self.class_of(a))
+            }
+            VendorOperand::Computed => cost_table::save(self.class_of(a)),
         });
     }
 
@@ -411,17 +415,20 @@ impl Lowering<'_> {
         let ty = self.function.exprs[id].ty;
         let class = self.class_or_int(ty);
         let (left, right) = (self.nature(a), self.nature(b));
-        let both = left != Nature::Simple && left != Nature::Element && right == Nature::Computed;
+        let both = left != VendorOperand::Simple
+            && left != VendorOperand::Element
+            && right == VendorOperand::Computed;
         self.cost(match class {
-            Class::F64 if right == Nature::Element => cost_table::CROWDED,
+            Class::F64 if right == VendorOperand::Element => cost_table::CROWDED,
             Class::F64 if both && !self.calls(b) => cost_table::CROWDED,
-            Class::F32 if right == Nature::Element => cost_table::CROWDED_SINGLE,
+            Class::F32 if right == VendorOperand::Element => cost_table::CROWDED_SINGLE,
             Class::I32 | Class::I64 | Class::F32 | Class::F64 => 0,
         });
         // As recorded: the dividend is moved to the argument register, an index to the register in which it is scaled.
         let divides = matches!(op, BinaryOp::Divide | BinaryOp::Remainder);
         let is_index = self.unit.types.is_pointer(ty) && self.is_shifted_sum(b);
-        let is_moved = class == Class::I32 && if divides { left == Nature::Computed } else { is_index };
+        let is_moved =
+            class == Class::I32 && if divides { left == VendorOperand::Computed } else { is_index };
         self.cost(i32::from(is_moved) * cost_table::MOVE);
         self.charge_operator(op, class, b);
     }
@@ -432,7 +439,7 @@ impl Lowering<'_> {
             return false;
         };
         matches!(self.function.exprs[scale].kind, ExprKind::Int(scale) if is_power(scale))
-            && self.nature(index) == Nature::Computed
+            && self.nature(index) == VendorOperand::Computed
     }
 
     /// Charges a unary operator except `!`, without its operand.
@@ -459,8 +466,8 @@ impl Lowering<'_> {
         }
         let class = self.class_of(a);
         let (left, right) = (self.nature(a), self.nature(b));
-        let elements = [left, right].into_iter().filter(|nature| *nature == Nature::Element).count();
-        let both = left != Nature::Simple && right == Nature::Computed && elements == 0;
+        let elements = [left, right].into_iter().filter(|nature| *nature == VendorOperand::Element).count();
+        let both = left != VendorOperand::Simple && right == VendorOperand::Computed && elements == 0;
         self.cost(match class {
             Class::F64 if elements > 0 => cost_table::CROWDED_COMPARE[elements - 1],
             Class::F64 if both => cost_table::CROWDED,
@@ -534,7 +541,7 @@ impl Lowering<'_> {
         let last = all.iter().rposition(|argument| self.calls(*argument)).unwrap_or(0);
         for (position, argument) in all.into_iter().enumerate() {
             let class = self.class_of(argument);
-            let is_kept = matches!(self.nature(argument), Nature::Computed | Nature::Result);
+            let is_kept = matches!(self.nature(argument), VendorOperand::Computed | VendorOperand::Result);
             self.cost(if is_kept && position < last { cost_table::save(class) } else { 0 });
             self.cost(cost_table::argument(class, is_firmware));
             self.charge_moved(argument);
@@ -549,10 +556,10 @@ impl Lowering<'_> {
         let class = self.class_of(value);
         let is_comparison = matches!(self.function.exprs[value].kind, ExprKind::Compare(..));
         self.cost(match self.nature(value) {
-            Nature::Simple | Nature::Element => 0,
-            Nature::Result => -cost_table::result(class),
-            Nature::Computed if is_comparison => 0,
-            Nature::Computed => cost_table::either(class, cost_table::MOVE, 2 * cost_table::MOVE),
+            VendorOperand::Simple | VendorOperand::Element => 0,
+            VendorOperand::Result => -cost_table::result(class),
+            VendorOperand::Computed if is_comparison => 0,
+            VendorOperand::Computed => cost_table::either(class, cost_table::MOVE, 2 * cost_table::MOVE),
         });
     }
 
@@ -581,16 +588,16 @@ impl Lowering<'_> {
         self.wait(if is_copy { 2 * words } else { words });
     }
 
-    fn nature(&self, id: ExprId) -> Nature {
+    fn nature(&self, id: ExprId) -> VendorOperand {
         match self.function.exprs[id].kind {
-            ExprKind::Int(_) | ExprKind::Float(_) => Nature::Simple,
-            ExprKind::Load(place) if self.is_through(place) => Nature::Element,
-            ExprKind::Load(_) => Nature::Simple,
-            ExprKind::Address(place) if self.is_through(place) => Nature::Computed,
-            ExprKind::Address(_) => Nature::Simple,
+            ExprKind::Int(_) | ExprKind::Float(_) => VendorOperand::Simple,
+            ExprKind::Load(place) if self.is_through(place) => VendorOperand::Element,
+            ExprKind::Load(_) => VendorOperand::Simple,
+            ExprKind::Address(place) if self.is_through(place) => VendorOperand::Computed,
+            ExprKind::Address(_) => VendorOperand::Simple,
             ExprKind::Convert(inner) if self.is_free(inner, id) => self.nature(inner),
-            ExprKind::Call(_) => Nature::Result,
-            _ => Nature::Computed,
+            ExprKind::Call(_) => VendorOperand::Result,
+            _ => VendorOperand::Computed,
         }
     }
 

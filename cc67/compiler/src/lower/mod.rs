@@ -73,7 +73,7 @@ pub fn lower(
         builder,
         homes: PrimaryMap::with_capacity(function.locals.len()),
         writes: SecondaryMap::new(),
-        jumps: Jumps::default(),
+        jumps: JumpTargets::default(),
         outgoing: None,
         spine: Vec::new(),
         held: Vec::new(),
@@ -115,7 +115,7 @@ enum Home {
 
 /// An operand that must still mean the same after other operands have been evaluated.
 #[derive(Clone, Copy, Debug)]
-struct Held {
+struct HeldOperand {
     operand: Operand,
     writes: u32,
     point: Point,
@@ -130,7 +130,7 @@ struct Switch {
 
 /// The jump targets of the statements being lowered; the innermost is last.
 #[derive(Debug, Default)]
-struct Jumps {
+struct JumpTargets {
     labels: SecondaryMap<LabelId, PackedOption<BlockId>>,
     breaks: Vec<BlockId>,
     continues: Vec<BlockId>,
@@ -147,13 +147,13 @@ struct Lowering<'a> {
     homes: PrimaryMap<LocalId, Home>,
     /// Number of writes of a local's value so far.
     writes: SecondaryMap<ValueId, u32>,
-    jumps: Jumps,
+    jumps: JumpTargets,
     /// The slot for the variable arguments of calls.
     outgoing: Option<SlotId>,
     /// Stack of operator nodes whose left operands are being lowered.
     spine: Vec<ExprId>,
     /// Stack of arguments that wait for their call.
-    held: Vec<Held>,
+    held: Vec<HeldOperand>,
     /// The state for charging, if the vendor's code is charged.
     cost_model: Option<CostModel>,
 }
@@ -247,13 +247,13 @@ impl Lowering<'_> {
     }
 
     /// Remembers an operand while others are evaluated.
-    fn hold(&self, operand: Operand) -> Held {
+    fn hold(&self, operand: Operand) -> HeldOperand {
         let writes = operand.as_value().map_or(0, |value| self.writes[value]);
-        Held { operand, writes, point: self.builder.point() }
+        HeldOperand { operand, writes, point: self.builder.point() }
     }
 
     /// The value of the operand when it was held. Operands that were held later must be released before.
-    fn release(&mut self, held: Held) -> Operand {
+    fn release(&mut self, held: HeldOperand) -> Operand {
         match held.operand {
             Operand::Value(value) if self.writes[value] != held.writes => {
                 let class = self.builder.function.values[value];

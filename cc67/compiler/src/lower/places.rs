@@ -1,6 +1,6 @@
 //! Places: storage locations, and their reads and writes.
 
-use super::{Held, Home, Lowering, types};
+use super::{HeldOperand, Home, Lowering, types};
 use crate::ir::inst::{Address, Base, Class, Constant, InstKind, Operand, ValueId};
 use crate::ir::operators::{BinaryOp, Width};
 use crate::operators;
@@ -114,7 +114,7 @@ impl Lowering<'_> {
     }
 
     /// Remembers storage while other operands are evaluated.
-    pub(super) fn hold_storage(&self, storage: Storage) -> (Storage, Option<Held>) {
+    pub(super) fn hold_storage(&self, storage: Storage) -> (Storage, Option<HeldOperand>) {
         let held = match storage {
             Storage::Memory(address, _) | Storage::Bits(address, _) => match address.base {
                 Base::Value(value) => Some(self.hold(value.into())),
@@ -126,7 +126,7 @@ impl Lowering<'_> {
     }
 
     /// The storage as it was when it was held.
-    pub(super) fn release_storage(&mut self, (storage, held): (Storage, Option<Held>)) -> Storage {
+    pub(super) fn release_storage(&mut self, (storage, held): (Storage, Option<HeldOperand>)) -> Storage {
         let Some(held) = held else { return storage };
         let base = self.release(held);
         let at = |address: Address| Address::of(base).plus(address.offset);

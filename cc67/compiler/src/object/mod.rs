@@ -15,7 +15,7 @@ mod write;
 pub use coff_words::kind_of;
 pub(crate) use coff_words::{base_type, class, function_type, statement, to_u16};
 pub use read::{ReadError, is_object};
-pub(crate) use unit::{About, UnitBuilder};
+pub(crate) use unit::{FunctionFacts, UnitBuilder};
 
 use std::ops::Range;
 

@@ -97,12 +97,12 @@ struct ObjectReader<'a> {
     word: u32,
     /// The unit's symbol at each index of the format.
     ids: Vec<Option<SymbolId>>,
-    functions: Vec<Placed>,
+    functions: Vec<FunctionSymbols>,
     objects: Vec<(Range<u32>, SymbolId)>,
 }
 
 /// A function as its symbols describe it.
-struct Placed {
+struct FunctionSymbols {
     words: Range<u32>,
     symbol: SymbolId,
     /// The index in the format.
@@ -183,7 +183,7 @@ impl<'a> ObjectReader<'a> {
         let definition = match (symbol.section, symbol.aux.is_empty()) {
             (TEXT, _) => {
                 let words = self.words(symbol.value..end).ok_or_else(|| wrong(symbol))?;
-                self.functions.push(Placed { words, symbol: id, index, end: SourceLine::default() });
+                self.functions.push(FunctionSymbols { words, symbol: id, index, end: SourceLine::default() });
                 Definition::None
             }
             (DATA, _) if u64::from(end) <= self.data.size() => {
@@ -255,7 +255,7 @@ impl<'a> ObjectReader<'a> {
         let mut relocations = self.text.relocations.clone();
         relocations.sort_by_key(|relocation| relocation.address);
         let mut relocations = relocations.into_iter().peekable();
-        for Placed { words, symbol, index, end } in std::mem::take(&mut self.functions) {
+        for FunctionSymbols { words, symbol, index, end } in std::mem::take(&mut self.functions) {
             let first = self.object.relocations.len() as u32;
             let limit = (self.head + words.end) * self.word;
             while let Some(relocation) = relocations.next_if(|next| next.address < limit) {

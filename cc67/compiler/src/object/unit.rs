@@ -5,9 +5,9 @@
 use super::{
     DataRelocation, Definition, Initialized, Line, Object, ObjectFunction, SourceLine, Symbol, SymbolKind,
 };
-use crate::bytecode::text::Added;
-use crate::bytecode::{Generated, Text};
-use crate::c67x::text::Words;
+use crate::bytecode::text::FunctionText;
+use crate::bytecode::{GeneratedFunction, Text};
+use crate::c67x::text::MachineText;
 use crate::c67x::{Externs, externs};
 use crate::ir::function::Signatures;
 use crate::ir::inst::SignatureId;
@@ -18,7 +18,7 @@ use crate::typed::{self, Linkage, SymbolId, Unit};
 
 /// The properties of a function other than its words.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct About {
+pub(crate) struct FunctionFacts {
     /// Its symbol.
     pub(crate) symbol: SymbolId,
     /// Its signature.
@@ -56,8 +56,8 @@ impl<'a> UnitBuilder<'a> {
     }
 
     /// Adds a function that was generated.
-    pub(crate) fn function(&mut self, about: About, generated: Generated) {
-        let Generated { added, frame, variables, inlined, exceeded } = generated;
+    pub(crate) fn function(&mut self, about: FunctionFacts, generated: GeneratedFunction) {
+        let GeneratedFunction { text: added, frame, variables, inlined, exceeded } = generated;
         let file = self.object.symbols[about.symbol].place.file;
         let end = self.place(about.end);
         let exceeded = exceeded.into_iter().map(|span| self.place(span)).collect();
@@ -94,23 +94,24 @@ impl<'a> UnitBuilder<'a> {
             let is_external = symbol.linkage == Linkage::External;
             let is_defined = (self.unit.symbols.get(id))
                 .is_some_and(|symbol| !matches!(symbol.definition, typed::Definition::None));
-            let about = externs::About { align: symbol.align, is_variadic, is_external, is_defined };
+            let about = externs::SymbolFacts { align: symbol.align, is_variadic, is_external, is_defined };
             externs.push(&symbol.name, about);
         }
         externs
     }
 
     /// Adds a function of the controller's code.
-    pub(crate) fn words(&mut self, about: About, words: Words) {
-        let Words { words, fixups, spans, frame, exceeded } = words;
+    pub(crate) fn words(&mut self, about: FunctionFacts, words: MachineText) {
+        let MachineText { words, fixups, spans, frame, exceeded } = words;
         let start = words.start;
         let relocations = fixups.into_iter().map(|fixup| Relocation {
             word: start + fixup.word,
             kind: RelocationKind::Processor(fixup.kind),
             symbol: fixup.symbol.unwrap_or(about.symbol),
         });
-        let added = Added { words, relocations: relocations.collect(), spans };
-        let generated = Generated { added, frame, variables: Vec::new(), inlined: Vec::new(), exceeded };
+        let added = FunctionText { words, relocations: relocations.collect(), spans };
+        let generated =
+            GeneratedFunction { text: added, frame, variables: Vec::new(), inlined: Vec::new(), exceeded };
         self.function(about, generated);
     }
 

@@ -109,7 +109,7 @@ impl<'a> Writer<'a> {
     fn new(object: &'a Object) -> Self {
         let (head, word) = match object.code {
             Some(_) => (0, CODE_WORD),
-            None => (head::words(&object.pool, object.signatures.as_slice()), WORD as u32),
+            None => (head::word_count(&object.pool, object.signatures.as_slice()), WORD as u32),
         };
         Self {
             object,

@@ -7,12 +7,12 @@ use crate::diag::Diagnostic;
 use crate::names::{Name, word};
 use crate::pp::{Token, TokenKind};
 
-use super::scopes::Meaning;
-use super::{Parsed, Parser};
+use super::scopes::NameMeaning;
+use super::{ParseResult, Parser};
 
 impl Parser<'_> {
     /// Reads a built-in construct if `token`, the next one, begins one.
-    pub(super) fn builtin(&mut self, token: Token) -> Option<Parsed<Expression>> {
+    pub(super) fn builtin(&mut self, token: Token) -> Option<ParseResult<Expression>> {
         let parse = match token.name {
             word::BUILTIN_VA_START | word::VA_START => Self::va_start,
             word::BUILTIN_VA_ARG | word::VA_ARG => Self::va_arg,
@@ -35,7 +35,7 @@ impl Parser<'_> {
     }
 
     /// `asm`, in any of its places.
-    pub(super) fn assembler(&mut self) -> Parsed<()> {
+    pub(super) fn assembler(&mut self) -> ParseResult<()> {
         let span = self.peek().span;
         self.fail(
             Diagnostic::error(span, "inline assembly is not supported")
@@ -45,35 +45,35 @@ impl Parser<'_> {
 
     fn is_builtin(&self, name: Name) -> bool {
         self.kind_at(1) == TokenKind::LeftParen
-            && (name.is_keyword() || self.scopes.meaning(name) == Meaning::Unknown)
+            && (name.is_keyword() || self.scopes.meaning(name) == NameMeaning::Unknown)
     }
 
-    fn va_start(&mut self) -> Parsed<ExpressionKind> {
+    fn va_start(&mut self) -> ParseResult<ExpressionKind> {
         let list = self.assignment()?;
         self.expect(TokenKind::Comma, "and the last named parameter")?;
         let last = self.assignment()?;
         Ok(ExpressionKind::VaStart(Box::new(list), Box::new(last)))
     }
 
-    fn va_arg(&mut self) -> Parsed<ExpressionKind> {
+    fn va_arg(&mut self) -> ParseResult<ExpressionKind> {
         let list = self.assignment()?;
         self.expect(TokenKind::Comma, "and a type")?;
         let ty = self.type_name()?;
         Ok(ExpressionKind::VaArg(Box::new(list), Box::new(ty)))
     }
 
-    fn va_end(&mut self) -> Parsed<ExpressionKind> {
+    fn va_end(&mut self) -> ParseResult<ExpressionKind> {
         Ok(ExpressionKind::VaEnd(Box::new(self.assignment()?)))
     }
 
-    fn va_copy(&mut self) -> Parsed<ExpressionKind> {
+    fn va_copy(&mut self) -> ParseResult<ExpressionKind> {
         let to = self.assignment()?;
         self.expect(TokenKind::Comma, "and the list to copy")?;
         let from = self.assignment()?;
         Ok(ExpressionKind::VaCopy(Box::new(to), Box::new(from)))
     }
 
-    fn offsetof(&mut self) -> Parsed<ExpressionKind> {
+    fn offsetof(&mut self) -> ParseResult<ExpressionKind> {
         let ty = self.type_name()?;
         self.expect(TokenKind::Comma, "and a member")?;
         if !self.is_identifier_at(0) {
@@ -85,7 +85,7 @@ impl Parser<'_> {
         Ok(ExpressionKind::Offsetof(Box::new(ty), path))
     }
 
-    fn generic(&mut self) -> Parsed<ExpressionKind> {
+    fn generic(&mut self) -> ParseResult<ExpressionKind> {
         let value = Box::new(self.assignment()?);
         let mut choices = Vec::new();
         while self.take(TokenKind::Comma).is_some() {

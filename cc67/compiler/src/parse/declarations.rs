@@ -9,12 +9,12 @@ use crate::names::word;
 use crate::pp::{Flags, TokenKind};
 use crate::source::Span;
 
-use super::declarators::Naming;
-use super::scopes::Meaning;
-use super::{Parsed, Parser, Reported};
+use super::declarators::NameRule;
+use super::scopes::NameMeaning;
+use super::{ErrorReported, ParseResult, Parser};
 
 /// A parsed declaration.
-enum Declared {
+enum DeclarationHead {
     /// Variables, types, prototypes.
     Names(Declaration),
     /// Everything before the body of a function.
@@ -31,7 +31,7 @@ impl Parser<'_> {
             match self.external() {
                 Ok(Some(item)) => unit.items.push(item),
                 Ok(None) => {}
-                Err(Reported) => {
+                Err(ErrorReported) => {
                     self.recovery.is_unwinding = false;
                     self.skip_statement(0);
                 }
@@ -44,7 +44,7 @@ impl Parser<'_> {
         unit
     }
 
-    fn external(&mut self) -> Parsed<Option<Item>> {
+    fn external(&mut self) -> ParseResult<Option<Item>> {
         let start = self.peek();
         match (start.kind, self.name()) {
             (TokenKind::Semicolon, _) => {
@@ -75,27 +75,31 @@ impl Parser<'_> {
             return self.loose_statement();
         }
         match self.declared(start.span)? {
-            Declared::Names(declaration) => Ok(Some(Item::Declaration(declaration))),
-            Declared::Function(specifiers, declarator) => self
+            DeclarationHead::Names(declaration) => Ok(Some(Item::Declaration(declaration))),
+            DeclarationHead::Function(specifiers, declarator) => self
                 .function(specifiers, declarator, start.span)
                 .map(|function| Some(Item::Function(function))),
         }
     }
 
     /// A declaration among statements.
-    pub(super) fn local_declaration(&mut self) -> Parsed<Statement> {
+    pub(super) fn local_declaration(&mut self) -> ParseResult<Statement> {
         let (start, index) = (self.peek(), self.at);
         match self.declared(start.span)? {
-            Declared::Names(declaration) => {
+            DeclarationHead::Names(declaration) => {
                 let span = declaration.span;
                 Ok(Statement { kind: StatementKind::Declaration(declaration), span })
             }
-            Declared::Function(_, declarator) => self.nested_function(&declarator, index),
+            DeclarationHead::Function(_, declarator) => self.nested_function(&declarator, index),
         }
     }
 
     /// Reports a function within a function. One that begins a line is probably not meant to be inside.
-    pub(super) fn nested_function(&mut self, declarator: &Declarator, start: usize) -> Parsed<Statement> {
+    pub(super) fn nested_function(
+        &mut self,
+        declarator: &Declarator,
+        start: usize,
+    ) -> ParseResult<Statement> {
         let name =
             declarator.name.map_or_else(String::new, |(name, _)| format!(" `{}`", self.spelling(name)));
         let span = declarator.name.map_or(declarator.span, |(_, span)| span);
@@ -122,11 +126,11 @@ impl Parser<'_> {
             self.report(diagnostic.note("functions cannot be nested"));
             self.skip_braces();
         }
-        Err(Reported)
+        Err(ErrorReported)
     }
 
     /// `_Static_assert(condition, "message");`
-    pub(super) fn static_assert(&mut self) -> Parsed<StaticAssert> {
+    pub(super) fn static_assert(&mut self) -> ParseResult<StaticAssert> {
         let start = self.next().span;
         if self.kind() != TokenKind::LeftParen {
             return self.fail_expected("`(`");
@@ -150,11 +154,11 @@ impl Parser<'_> {
     /// Reports whether `static_assert`, which is a macro in C, is used as one.
     pub(super) fn is_static_assert(&self) -> bool {
         self.kind_at(1) == TokenKind::LeftParen
-            && self.scopes.meaning(word::STATIC_ASSERT_MACRO) == Meaning::Unknown
+            && self.scopes.meaning(word::STATIC_ASSERT_MACRO) == NameMeaning::Unknown
     }
 
     /// Reads a declaration, or a function definition up to its body.
-    fn declared(&mut self, start: Span) -> Parsed<Declared> {
+    fn declared(&mut self, start: Span) -> ParseResult<DeclarationHead> {
         let mut specifiers = self.specifiers()?;
         if specifiers.ty.is_none() && self.is_unknown_type() {
             self.unknown_type(&mut specifiers);
@@ -163,12 +167,12 @@ impl Parser<'_> {
         let mut declarators = Vec::with_capacity(1);
         if self.kind() != TokenKind::Semicolon && !self.ends_type_alone(&specifiers) {
             loop {
-                let declarator = self.declarator(Naming::Required)?;
+                let declarator = self.declarator(NameRule::Required)?;
                 if declarators.is_empty() && self.begins_body(&declarator) {
-                    return Ok(Declared::Function(specifiers, declarator));
+                    return Ok(DeclarationHead::Function(specifiers, declarator));
                 }
                 if self.has_surplus_semicolon(&declarator) {
-                    return Ok(Declared::Function(specifiers, declarator));
+                    return Ok(DeclarationHead::Function(specifiers, declarator));
                 }
                 self.declare(&specifiers, &declarator);
                 let initializer =
@@ -194,7 +198,7 @@ impl Parser<'_> {
             let open = self.recovery.open.len();
             self.skip_statement(open);
         }
-        Ok(Declared::Names(Declaration { specifiers, declarators, span }))
+        Ok(DeclarationHead::Names(Declaration { specifiers, declarators, span }))
     }
 
     /// Reports whether a type without declarators ends here, its `;` forgotten.
@@ -281,7 +285,7 @@ impl Parser<'_> {
     fn declare(&mut self, specifiers: &Specifiers, declarator: &Declarator) {
         let is_typedef = matches!(specifiers.storage, Some((Storage::Typedef, _)));
         if let Some((name, _)) = declarator.name {
-            self.scopes.declare(name, if is_typedef { Meaning::Type } else { Meaning::Ordinary });
+            self.scopes.declare(name, if is_typedef { NameMeaning::Type } else { NameMeaning::Ordinary });
         }
     }
 
@@ -317,7 +321,7 @@ impl Parser<'_> {
         specifiers: Specifiers,
         declarator: Declarator,
         start: Span,
-    ) -> Parsed<FunctionDefinition> {
+    ) -> ParseResult<FunctionDefinition> {
         self.has_function = true;
         self.declare(&specifiers, &declarator);
         self.scopes.enter();
@@ -328,13 +332,13 @@ impl Parser<'_> {
         Ok(FunctionDefinition { specifiers, declarator, old_style, body, span: self.since(start) })
     }
 
-    fn function_body(&mut self) -> Parsed<(Vec<Declaration>, Statement)> {
+    fn function_body(&mut self) -> ParseResult<(Vec<Declaration>, Statement)> {
         let mut old_style = Vec::new();
         while self.kind() != TokenKind::LeftBrace {
             let start = self.peek().span;
             match self.declared(start)? {
-                Declared::Names(declaration) => old_style.push(declaration),
-                Declared::Function(_, declarator) => {
+                DeclarationHead::Names(declaration) => old_style.push(declaration),
+                DeclarationHead::Function(_, declarator) => {
                     let message = "expected the body of the function before this one";
                     return self.fail(Diagnostic::error(declarator.span, message));
                 }
@@ -359,12 +363,12 @@ impl Parser<'_> {
         match declarator.derived.first() {
             Some(Derived::Function(Parameters::Prototype { parameters, .. })) => {
                 for (name, _) in parameters.iter().filter_map(|parameter| parameter.declarator.name) {
-                    self.scopes.declare(name, Meaning::Ordinary);
+                    self.scopes.declare(name, NameMeaning::Ordinary);
                 }
             }
             Some(Derived::Function(Parameters::Names(names))) => {
                 for (name, _) in names {
-                    self.scopes.declare(*name, Meaning::Ordinary);
+                    self.scopes.declare(*name, NameMeaning::Ordinary);
                 }
             }
             _ => {}
@@ -396,10 +400,10 @@ impl Parser<'_> {
         }
     }
 
-    fn loose_statement(&mut self) -> Parsed<Option<Item>> {
+    fn loose_statement(&mut self) -> ParseResult<Option<Item>> {
         if self.recovery.has_loose_statement {
             self.at += 1;
-            return Err(Reported);
+            return Err(ErrorReported);
         }
         self.recovery.has_loose_statement = true;
         if self.kind() != TokenKind::Identifier {

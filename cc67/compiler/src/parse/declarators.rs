@@ -6,14 +6,14 @@ use crate::names::{Name, word};
 use crate::pp::TokenKind;
 use crate::source::Span;
 
-use super::{NESTING, Parsed, Parser};
+use super::{NESTING, ParseResult, Parser};
 
 /// The name of a declarator and the derivations inside its parentheses.
-type Direct = (Option<(Name, Span)>, Vec<Derived>);
+type DirectDeclarator = (Option<(Name, Span)>, Vec<Derived>);
 
 /// The rule for the name of a declarator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Naming {
+pub(super) enum NameRule {
     /// In a declaration.
     Required,
     /// In a parameter.
@@ -24,7 +24,7 @@ pub(super) enum Naming {
 
 impl Parser<'_> {
     /// Reads a declarator.
-    pub(super) fn declarator(&mut self, naming: Naming) -> Parsed<Declarator> {
+    pub(super) fn declarator(&mut self, naming: NameRule) -> ParseResult<Declarator> {
         let start = self.peek().span;
         let pointers = self.pointers()?;
         let (name, mut derived) = self.direct(naming)?;
@@ -52,18 +52,18 @@ impl Parser<'_> {
     }
 
     /// `type declarator` without a name.
-    pub(super) fn type_name(&mut self) -> Parsed<TypeName> {
+    pub(super) fn type_name(&mut self) -> ParseResult<TypeName> {
         let start = self.peek().span;
         let mut specifiers = self.specifiers()?;
         if specifiers.ty.is_none() && self.is_identifier_at(0) {
             self.unknown_type(&mut specifiers);
         }
-        let declarator = self.declarator(Naming::Forbidden)?;
+        let declarator = self.declarator(NameRule::Forbidden)?;
         Ok(TypeName { specifiers, declarator, span: self.since(start) })
     }
 
     #[inline(never)]
-    fn pointers(&mut self) -> Parsed<Vec<Qualifiers>> {
+    fn pointers(&mut self) -> ParseResult<Vec<Qualifiers>> {
         let mut pointers = Vec::new();
         while self.take(TokenKind::Star).is_some() {
             let mut qualifiers = Qualifiers::default();
@@ -74,19 +74,19 @@ impl Parser<'_> {
     }
 
     /// The name, or a declarator in parentheses.
-    fn direct(&mut self, naming: Naming) -> Parsed<Direct> {
-        if naming != Naming::Forbidden && self.is_identifier_at(0) {
+    fn direct(&mut self, naming: NameRule) -> ParseResult<DirectDeclarator> {
+        if naming != NameRule::Forbidden && self.is_identifier_at(0) {
             let token = self.next();
             return Ok((Some((token.name, token.span)), Vec::new()));
         }
-        if self.kind() == TokenKind::LeftParen && (naming == Naming::Required || !self.opens_parameters()) {
+        if self.kind() == TokenKind::LeftParen && (naming == NameRule::Required || !self.opens_parameters()) {
             self.open();
             self.attributes()?;
             let inner = self.nested(|parser| parser.declarator(naming))?;
             self.close(TokenKind::RightParen)?;
             return Ok((inner.name, inner.derived));
         }
-        if naming == Naming::Required {
+        if naming == NameRule::Required {
             return self.fail_expected("a name");
         }
         Ok((None, Vec::new()))
@@ -125,7 +125,7 @@ impl Parser<'_> {
 
     /// `[length]`, `[]` or `[*]`
     #[inline(never)]
-    fn array(&mut self) -> Parsed<Derived> {
+    fn array(&mut self) -> ParseResult<Derived> {
         self.open();
         let mut qualifiers = Qualifiers::default();
         while self.take_word(word::STATIC).is_some() || self.qualifier(&mut qualifiers)? {}
@@ -144,7 +144,7 @@ impl Parser<'_> {
 
     /// `(parameters)`
     #[inline(never)]
-    fn parameters(&mut self) -> Parsed<Parameters> {
+    fn parameters(&mut self) -> ParseResult<Parameters> {
         self.open();
         let parameters = if self.kind() == TokenKind::RightParen {
             Parameters::Unspecified
@@ -167,7 +167,7 @@ impl Parser<'_> {
             && matches!(self.kind_at(1), TokenKind::Comma | TokenKind::RightParen)
     }
 
-    fn parameter_names(&mut self) -> Parsed<Parameters> {
+    fn parameter_names(&mut self) -> ParseResult<Parameters> {
         let mut names = Vec::new();
         loop {
             if !self.is_identifier_at(0) {
@@ -181,7 +181,7 @@ impl Parser<'_> {
         }
     }
 
-    fn prototype(&mut self) -> Parsed<Parameters> {
+    fn prototype(&mut self) -> ParseResult<Parameters> {
         let mut parameters = Vec::with_capacity(1);
         loop {
             if self.take(TokenKind::Ellipsis).is_some() {
@@ -195,7 +195,7 @@ impl Parser<'_> {
     }
 
     #[inline(never)]
-    fn parameter(&mut self) -> Parsed<Parameter> {
+    fn parameter(&mut self) -> ParseResult<Parameter> {
         let start = self.peek();
         let mut specifiers = self.specifiers()?;
         let is_bare = specifiers.span.lo == specifiers.span.hi;
@@ -206,7 +206,7 @@ impl Parser<'_> {
             return self.fail_expected("a parameter");
         }
         self.reference(&mut specifiers);
-        let declarator = self.declarator(Naming::Optional)?;
+        let declarator = self.declarator(NameRule::Optional)?;
         Ok(Parameter { specifiers, declarator, span: self.since(start.span) })
     }
 
@@ -225,7 +225,7 @@ impl Parser<'_> {
     }
 
     /// `asm("name")` and attributes after a declarator.
-    fn labels_and_attributes(&mut self) -> Parsed<Vec<Alignment>> {
+    fn labels_and_attributes(&mut self) -> ParseResult<Vec<Alignment>> {
         if matches!(self.name(), Some(word::ASM | word::ASM_ | word::ASM__)) {
             self.assembler()?;
         }

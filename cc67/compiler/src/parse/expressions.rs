@@ -7,26 +7,26 @@ use crate::ast::{Expression, ExpressionKind};
 use crate::pp::TokenKind;
 
 use super::operators::{ASSIGNMENT, COMMA, CONDITIONAL, Infix, infix};
-use super::{CHAIN, OPERATORS, Parsed, Parser};
+use super::{CHAIN, OPERATORS, ParseResult, Parser};
 
 impl Parser<'_> {
     /// `a, b` and everything that binds tighter.
-    pub(super) fn expression(&mut self) -> Parsed<Expression> {
+    pub(super) fn expression(&mut self) -> ParseResult<Expression> {
         self.infix(COMMA)
     }
 
     /// `a = b` and everything that binds tighter.
-    pub(super) fn assignment(&mut self) -> Parsed<Expression> {
+    pub(super) fn assignment(&mut self) -> ParseResult<Expression> {
         self.infix(ASSIGNMENT)
     }
 
     /// `a ? b : c` and everything that binds tighter, called a constant expression in the grammar.
-    pub(super) fn conditional(&mut self) -> Parsed<Expression> {
+    pub(super) fn conditional(&mut self) -> ParseResult<Expression> {
         self.infix(CONDITIONAL)
     }
 
     /// Operands with operators of at least the precedence `least`.
-    fn infix(&mut self, least: u8) -> Parsed<Expression> {
+    fn infix(&mut self, least: u8) -> ParseResult<Expression> {
         let mut left = self.unary()?;
         let mut count = 0;
         while let Some((operator, binding)) = infix(self.kind())
@@ -50,7 +50,7 @@ impl Parser<'_> {
     }
 
     /// The operand after a left-associative operator.
-    fn right_operand(&mut self, binding: u8) -> Parsed<Expression> {
+    fn right_operand(&mut self, binding: u8) -> ParseResult<Expression> {
         if self.nesting.operators >= OPERATORS {
             return Err(self.too_deep());
         }
@@ -62,14 +62,14 @@ impl Parser<'_> {
 
     /// The right side of an assignment, which is right-associative.
     #[inline(never)]
-    fn assigned(&mut self, operator: Infix, left: Expression) -> Parsed<Expression> {
+    fn assigned(&mut self, operator: Infix, left: Expression) -> ParseResult<Expression> {
         let right = self.nested(Self::assignment)?;
         Ok(combine(operator, left, right))
     }
 
     /// Parses the branches after `condition ?`; the middle operand may be missing.
     #[inline(never)]
-    fn branches(&mut self, condition: Expression) -> Parsed<Expression> {
+    fn branches(&mut self, condition: Expression) -> ParseResult<Expression> {
         let then = match self.kind() {
             TokenKind::Colon => None,
             _ => Some(Box::new(self.nested(Self::expression)?)),

@@ -8,8 +8,8 @@ use crate::names::{Name, word};
 use crate::pp::{Flags, TokenKind};
 use crate::words::foreign as foreign_words;
 
-use super::scopes::Meaning;
-use super::{Parsed, Parser};
+use super::scopes::NameMeaning;
+use super::{ParseResult, Parser};
 
 /// A language in which parts of a program turn out to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,7 +20,7 @@ pub(super) enum Language {
 }
 
 /// The languages that were reported.
-pub(super) type Reported = BTreeSet<Language>;
+pub(super) type ReportedLanguages = BTreeSet<Language>;
 
 impl Parser<'_> {
     /// Reports a word of a language, once for each language.
@@ -33,7 +33,7 @@ impl Parser<'_> {
     /// The spelling of the next token, if it is a name without a meaning here.
     fn unknown_word(&self) -> Option<&str> {
         let name = self.name().filter(|name| !name.is_keyword())?;
-        (self.scopes.meaning(name) == Meaning::Unknown).then(|| self.spelling(name))
+        (self.scopes.meaning(name) == NameMeaning::Unknown).then(|| self.spelling(name))
     }
 
     /// The keyword that the next name would be with small letters, as in `If (x)`; reports it.
@@ -84,7 +84,7 @@ impl Parser<'_> {
     }
 
     /// A statement of another language, which is skipped; `None` if there is none.
-    pub(super) fn foreign_statement(&mut self) -> Option<Parsed<Statement>> {
+    pub(super) fn foreign_statement(&mut self) -> Option<ParseResult<Statement>> {
         let start = self.peek().span;
         let written = self.unknown_word()?;
         let (language, message, help) = if is_block_end(written) && self.kind_at(1) != TokenKind::LeftParen {
@@ -113,7 +113,7 @@ impl Parser<'_> {
     /// Reports whether an otherwise undeclared word of G-code is at the token `ahead`.
     fn is_g_code_at(&self, ahead: usize) -> bool {
         self.name_at(ahead).is_some_and(|name| {
-            self.scopes.meaning(name) == Meaning::Unknown && foreign_words::is_g_code(self.spelling(name))
+            self.scopes.meaning(name) == NameMeaning::Unknown && foreign_words::is_g_code(self.spelling(name))
         })
     }
 

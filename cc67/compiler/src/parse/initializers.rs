@@ -3,11 +3,11 @@
 use crate::ast::{Designator, Initializer, InitializerItem};
 use crate::pp::TokenKind;
 
-use super::{Parsed, Parser};
+use super::{ParseResult, Parser};
 
 impl Parser<'_> {
     /// Parses an initialiser after `=`.
-    pub(super) fn initializer(&mut self) -> Parsed<Initializer> {
+    pub(super) fn initializer(&mut self) -> ParseResult<Initializer> {
         if self.kind() != TokenKind::LeftBrace {
             return Ok(Initializer::Expression(self.assignment()?));
         }
@@ -17,7 +17,7 @@ impl Parser<'_> {
     }
 
     /// `{ … }`
-    pub(super) fn initializer_list(&mut self) -> Parsed<Vec<InitializerItem>> {
+    pub(super) fn initializer_list(&mut self) -> ParseResult<Vec<InitializerItem>> {
         self.open();
         let mut items = Vec::new();
         while self.kind() != TokenKind::RightBrace {
@@ -32,7 +32,7 @@ impl Parser<'_> {
     }
 
     /// `.a[1] =`, `[1] =`, and the GNU forms `a:` and `[1]` without `=`.
-    fn designators(&mut self) -> Parsed<Vec<Designator>> {
+    fn designators(&mut self) -> ParseResult<Vec<Designator>> {
         let mut designators = Vec::new();
         if self.is_identifier_at(0) && self.kind_at(1) == TokenKind::Colon {
             let token = self.next();
@@ -49,7 +49,7 @@ impl Parser<'_> {
     }
 
     /// Any number of `.a` and `[1]`.
-    pub(super) fn designator_steps(&mut self, designators: &mut Vec<Designator>) -> Parsed<()> {
+    pub(super) fn designator_steps(&mut self, designators: &mut Vec<Designator>) -> ParseResult<()> {
         loop {
             match self.kind() {
                 TokenKind::Dot => {

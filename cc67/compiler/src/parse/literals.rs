@@ -95,7 +95,7 @@ impl Parser<'_> {
         StringLiteral { elements, encoding }
     }
 
-    fn report_quoted(&mut self, token: Token, problems: Vec<quoted::Problem>) {
+    fn report_quoted(&mut self, token: Token, problems: Vec<quoted::QuotedProblem>) {
         for problem in problems {
             let span = part(token, &problem.range);
             let diagnostic = match problem.kind {

@@ -4,7 +4,7 @@
 //! compiler has. It accepts implicit `int` wherever that compiler does. It only needs to know which names are types
 //! ([`scopes`]).
 //!
-//! An error is reported where it is found and propagates as [`Reported`] to the enclosing statement or declaration,
+//! An error is reported where it is found and propagates as [`ErrorReported`] to the enclosing statement or declaration,
 //! which continues after it ([`recover`]): one run shows all independent errors, and few others.
 
 #![cfg_attr(
@@ -84,10 +84,10 @@ pub fn parse(tokens: &[Token], sources: &SourceMap, names: &Names, sink: &mut Si
 
 /// Says that an error was reported and the construct could not be parsed.
 #[derive(Debug)]
-struct Reported;
+struct ErrorReported;
 
 /// The result of a parsing function.
-type Parsed<T> = Result<T, Reported>;
+type ParseResult<T> = Result<T, ErrorReported>;
 
 /// A parser at work.
 struct Parser<'a> {
@@ -131,7 +131,7 @@ struct Recovery {
     /// A statement outside all functions was reported.
     has_loose_statement: bool,
     /// Other languages whose words were reported.
-    foreign: foreign::Reported,
+    foreign: foreign::ReportedLanguages,
 }
 
 impl Parser<'_> {
@@ -203,7 +203,7 @@ impl Parser<'_> {
     }
 
     /// Parses a construct one nesting level deeper.
-    fn nested<T>(&mut self, parse: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
+    fn nested<T>(&mut self, parse: impl FnOnce(&mut Self) -> ParseResult<T>) -> ParseResult<T> {
         if self.nesting.constructs >= NESTING {
             return Err(self.too_deep());
         }
@@ -214,16 +214,16 @@ impl Parser<'_> {
     }
 
     #[inline(never)]
-    fn too_deep(&mut self) -> Reported {
+    fn too_deep(&mut self) -> ErrorReported {
         self.exceed(format!("nested deeper than {NESTING} levels"))
     }
 
     #[inline(never)]
-    fn too_long(&mut self) -> Reported {
+    fn too_long(&mut self) -> ErrorReported {
         self.exceed(format!("more than {CHAIN} operators in a row"))
     }
 
-    fn exceed(&mut self, message: String) -> Reported {
+    fn exceed(&mut self, message: String) -> ErrorReported {
         let span = self.peek().span;
         self.report(Diagnostic::error(span, message).note("the rest of the program was not read"));
         self.stop()

@@ -8,13 +8,13 @@ use crate::names::{Name, word};
 use crate::pp::TokenKind;
 use crate::source::Span;
 
-use super::declarators::Naming;
-use super::scopes::Meaning;
-use super::{Parsed, Parser};
+use super::declarators::NameRule;
+use super::scopes::NameMeaning;
+use super::{ParseResult, Parser};
 
 impl Parser<'_> {
     /// `struct tag { … }`, at the keyword.
-    pub(super) fn record(&mut self) -> Parsed<RecordSpecifier> {
+    pub(super) fn record(&mut self) -> ParseResult<RecordSpecifier> {
         let keyword = self.next();
         let kind = if keyword.name == word::STRUCT { RecordKind::Struct } else { RecordKind::Union };
         let mut alignments = self.attributes()?;
@@ -32,7 +32,7 @@ impl Parser<'_> {
     }
 
     /// `enum tag { … }`, at the keyword.
-    pub(super) fn enumeration(&mut self) -> Parsed<EnumSpecifier> {
+    pub(super) fn enumeration(&mut self) -> ParseResult<EnumSpecifier> {
         let keyword = self.next();
         self.attributes()?;
         let tag = self.tag("enum");
@@ -53,7 +53,7 @@ impl Parser<'_> {
         Some((token.name, token.span))
     }
 
-    fn members(&mut self) -> Parsed<Vec<MemberDeclaration>> {
+    fn members(&mut self) -> ParseResult<Vec<MemberDeclaration>> {
         self.open();
         let mut members = Vec::new();
         while !matches!(self.kind(), TokenKind::RightBrace | TokenKind::End) {
@@ -77,7 +77,7 @@ impl Parser<'_> {
     }
 
     /// `int a, b : 3;`; nothing for an assertion.
-    fn member_line(&mut self) -> Parsed<Option<MemberDeclaration>> {
+    fn member_line(&mut self) -> ParseResult<Option<MemberDeclaration>> {
         if self.name() == Some(word::STATIC_ASSERT) {
             self.static_assert()?;
             return Ok(None);
@@ -102,9 +102,9 @@ impl Parser<'_> {
         Ok(Some(MemberDeclaration { specifiers, members, span }))
     }
 
-    fn member(&mut self) -> Parsed<MemberDeclarator> {
+    fn member(&mut self) -> ParseResult<MemberDeclarator> {
         let declarator =
-            if self.kind() == TokenKind::Colon { None } else { Some(self.declarator(Naming::Required)?) };
+            if self.kind() == TokenKind::Colon { None } else { Some(self.declarator(NameRule::Required)?) };
         let width = match self.take(TokenKind::Colon) {
             Some(_) => Some(self.conditional()?),
             None => None,
@@ -113,7 +113,7 @@ impl Parser<'_> {
         Ok(MemberDeclarator { declarator, width })
     }
 
-    fn enumerators(&mut self) -> Parsed<Vec<Enumerator>> {
+    fn enumerators(&mut self) -> ParseResult<Vec<Enumerator>> {
         self.open();
         let mut enumerators = Vec::new();
         while self.kind() != TokenKind::RightBrace {
@@ -126,7 +126,7 @@ impl Parser<'_> {
                 Some(_) => Some(self.conditional()?),
                 None => None,
             };
-            self.scopes.declare(token.name, Meaning::Ordinary);
+            self.scopes.declare(token.name, NameMeaning::Ordinary);
             enumerators.push(Enumerator { name: token.name, span: token.span, value });
             if self.take(TokenKind::Comma).is_none() {
                 break;

@@ -5,7 +5,7 @@ use crate::names::word;
 use crate::pp::{Flags, Token, TokenKind};
 use crate::source::Span;
 
-use super::{Parsed, Parser, Reported};
+use super::{ErrorReported, ParseResult, Parser};
 
 impl Parser<'_> {
     /// Reports a diagnostic, unless the parser has stopped.
@@ -21,26 +21,26 @@ impl Parser<'_> {
     }
 
     /// Reports an error and gives up the construct.
-    pub(super) fn fail<T>(&mut self, diagnostic: Diagnostic) -> Parsed<T> {
+    pub(super) fn fail<T>(&mut self, diagnostic: Diagnostic) -> ParseResult<T> {
         self.report(diagnostic);
-        Err(Reported)
+        Err(ErrorReported)
     }
 
     /// Gives up the rest of the program.
-    pub(super) fn stop(&mut self) -> Reported {
+    pub(super) fn stop(&mut self) -> ErrorReported {
         self.recovery.is_stopped = true;
         self.at = self.tokens.len();
-        Reported
+        ErrorReported
     }
 
     /// Reports that the next token is not the expected one.
-    pub(super) fn fail_expected<T>(&mut self, what: &str) -> Parsed<T> {
+    pub(super) fn fail_expected<T>(&mut self, what: &str) -> ParseResult<T> {
         let token = self.peek();
         if token.kind == TokenKind::End {
             return Err(self.report_end(what));
         }
         if token.flags.has(Flags::BROKEN) {
-            return Err(Reported);
+            return Err(ErrorReported);
         }
         let found = self.describe(token);
         let diagnostic = Diagnostic::error(token.span, format!("expected {what}, found {found}"));
@@ -84,7 +84,7 @@ impl Parser<'_> {
     }
 
     /// Takes a token of this kind; `what` describes the position where it is expected.
-    pub(super) fn expect(&mut self, kind: TokenKind, what: &str) -> Parsed<Token> {
+    pub(super) fn expect(&mut self, kind: TokenKind, what: &str) -> ParseResult<Token> {
         match self.take(kind) {
             Some(token) => Ok(token),
             None => {
@@ -95,7 +95,7 @@ impl Parser<'_> {
     }
 
     /// Takes the bracket that closes the last open one.
-    pub(super) fn close(&mut self, kind: TokenKind) -> Parsed<Token> {
+    pub(super) fn close(&mut self, kind: TokenKind) -> ParseResult<Token> {
         if let Some(token) = self.take(kind) {
             self.recovery.open.pop();
             return Ok(token);
@@ -124,7 +124,7 @@ impl Parser<'_> {
             Ok(found)
         } else {
             self.recovery.open.push(opener);
-            Err(Reported)
+            Err(ErrorReported)
         }
     }
 
@@ -183,7 +183,7 @@ impl Parser<'_> {
     }
 
     /// Takes the `;` after `what`; if it is missing, that is reported at its position.
-    pub(super) fn semicolon(&mut self, what: Span) -> Parsed<()> {
+    pub(super) fn semicolon(&mut self, what: Span) -> ParseResult<()> {
         if self.take(TokenKind::Semicolon).is_some() {
             return Ok(());
         }
@@ -208,7 +208,7 @@ impl Parser<'_> {
             }
         }
         self.report(diagnostic);
-        if is_forgotten || found.kind == TokenKind::End { Ok(()) } else { Err(Reported) }
+        if is_forgotten || found.kind == TokenKind::End { Ok(()) } else { Err(ErrorReported) }
     }
 
     /// The place after the token read last.
@@ -241,7 +241,7 @@ impl Parser<'_> {
     }
 
     /// Reports that the file ends within a construct, and stops.
-    fn report_end(&mut self, what: &str) -> Reported {
+    fn report_end(&mut self, what: &str) -> ErrorReported {
         // The preprocessor gave up and reported the reason.
         if self.end.flags.has(Flags::BROKEN) {
             return self.stop();

@@ -10,7 +10,7 @@ use crate::names::Name;
 
 /// The meaning of a name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Meaning {
+pub(super) enum NameMeaning {
     /// Nothing declared it.
     #[default]
     Unknown,
@@ -25,21 +25,21 @@ pub(super) enum Meaning {
 /// The scopes that are open.
 #[derive(Debug, Default)]
 pub(super) struct Scopes {
-    meanings: SecondaryMap<Name, Meaning>,
+    meanings: SecondaryMap<Name, NameMeaning>,
     /// The meanings of names before the declarations of the open scopes.
-    hidden: Vec<(Name, Meaning)>,
+    hidden: Vec<(Name, NameMeaning)>,
     /// The start of each open scope in `hidden`.
     starts: Vec<usize>,
 }
 
 impl Scopes {
     /// The meaning of a name in the current scope.
-    pub(super) fn meaning(&self, name: Name) -> Meaning {
+    pub(super) fn meaning(&self, name: Name) -> NameMeaning {
         self.meanings.get(name).copied().unwrap_or_default()
     }
 
     /// Declares a name in the innermost scope.
-    pub(super) fn declare(&mut self, name: Name, meaning: Meaning) {
+    pub(super) fn declare(&mut self, name: Name, meaning: NameMeaning) {
         let before = std::mem::replace(self.entry(name), meaning);
         if !self.starts.is_empty() {
             self.hidden.push((name, before));
@@ -48,7 +48,7 @@ impl Scopes {
 
     /// Makes a name a missing type in all scopes, so that it is reported once.
     pub(super) fn set_missing_type(&mut self, name: Name) {
-        *self.entry(name) = Meaning::MissingType;
+        *self.entry(name) = NameMeaning::MissingType;
     }
 
     /// Reports whether only the file scope is open.
@@ -72,7 +72,7 @@ impl Scopes {
     }
 
     #[expect(clippy::indexing_slicing, reason = "the map grows to hold every key")]
-    fn entry(&mut self, name: Name) -> &mut Meaning {
+    fn entry(&mut self, name: Name) -> &mut NameMeaning {
         &mut self.meanings[name]
     }
 }

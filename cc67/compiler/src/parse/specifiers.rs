@@ -8,12 +8,12 @@ use crate::names::{Name, word};
 use crate::pp::{Flags, TokenKind};
 use crate::source::Span;
 
-use super::scopes::Meaning;
-use super::{Parsed, Parser};
+use super::scopes::NameMeaning;
+use super::{ParseResult, Parser};
 
 /// The words of an arithmetic type, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Words {
+struct ArithmeticWords {
     /// `void`, `char`, `int`, `float`, `double` or `_Bool`; `None` for `unsigned`, `long` …
     base: Option<BaseType>,
     short: u8,
@@ -34,7 +34,7 @@ enum BaseType {
 
 impl Parser<'_> {
     /// Reads all words before a declarator; perhaps none.
-    pub(super) fn specifiers(&mut self) -> Parsed<Specifiers> {
+    pub(super) fn specifiers(&mut self) -> ParseResult<Specifiers> {
         let first = self.at;
         let start = self.peek().span;
         let mut specifiers = Specifiers {
@@ -45,7 +45,7 @@ impl Parser<'_> {
             ty: None,
             span: Span { hi: start.lo, ..start },
         };
-        let mut words = Words::default();
+        let mut words = ArithmeticWords::default();
         while let Some(name) = self.name() {
             if self.attribute(&mut specifiers.alignments)?
                 || self.qualifier(&mut specifiers.qualifiers)?
@@ -53,7 +53,7 @@ impl Parser<'_> {
             {
                 continue;
             }
-            let is_open = specifiers.ty.is_none() && words == Words::default();
+            let is_open = specifiers.ty.is_none() && words == ArithmeticWords::default();
             if name.is_keyword() {
                 if self.arithmetic_word(name, &mut words)? {
                     if specifiers.ty.is_some() {
@@ -76,7 +76,7 @@ impl Parser<'_> {
                 break;
             }
         }
-        if words != Words::default() {
+        if words != ArithmeticWords::default() {
             specifiers.ty = Some(TypeSpecifier::Basic(self.basic_type(words, self.since(start))?));
         }
         if self.at > first {
@@ -86,7 +86,7 @@ impl Parser<'_> {
     }
 
     /// Reads qualifiers and misplaced tokens there; true if anything was read.
-    pub(super) fn qualifier(&mut self, qualifiers: &mut Qualifiers) -> Parsed<bool> {
+    pub(super) fn qualifier(&mut self, qualifiers: &mut Qualifiers) -> ParseResult<bool> {
         match self.name() {
             Some(word::CONST | word::CONST_ | word::CONST__) => qualifiers.is_const = true,
             Some(word::VOLATILE | word::VOLATILE_ | word::VOLATILE__) => qualifiers.is_volatile = true,
@@ -100,7 +100,7 @@ impl Parser<'_> {
     }
 
     /// Reads attributes; returns their alignments.
-    pub(super) fn attributes(&mut self) -> Parsed<Vec<Alignment>> {
+    pub(super) fn attributes(&mut self) -> ParseResult<Vec<Alignment>> {
         let mut alignments = Vec::new();
         while matches!(self.name(), Some(word::ATTRIBUTE | word::ATTRIBUTE__)) {
             self.attribute(&mut alignments)?;
@@ -109,7 +109,7 @@ impl Parser<'_> {
     }
 
     /// Reads one `__attribute__((…))` or `_Alignas(…)`; true if there was one.
-    fn attribute(&mut self, alignments: &mut Vec<Alignment>) -> Parsed<bool> {
+    fn attribute(&mut self, alignments: &mut Vec<Alignment>) -> ParseResult<bool> {
         match self.name() {
             Some(word::ATTRIBUTE | word::ATTRIBUTE__) => {
                 self.at += 1;
@@ -129,7 +129,7 @@ impl Parser<'_> {
     }
 
     /// `(16)` or `(type)`
-    fn alignment(&mut self) -> Parsed<Alignment> {
+    fn alignment(&mut self) -> ParseResult<Alignment> {
         self.open();
         let alignment = if self.is_type_at(0) {
             Alignment::Type(self.type_name()?)
@@ -177,8 +177,8 @@ impl Parser<'_> {
             | word::ALIGNAS
             | word::BUILTIN_VA_LIST => true,
             _ if name.is_keyword() => false,
-            word::VA_LIST => self.scopes.meaning(name) != Meaning::Ordinary,
-            _ => matches!(self.scopes.meaning(name), Meaning::Type | Meaning::MissingType),
+            word::VA_LIST => self.scopes.meaning(name) != NameMeaning::Ordinary,
+            _ => matches!(self.scopes.meaning(name), NameMeaning::Type | NameMeaning::MissingType),
         }
     }
 
@@ -200,7 +200,7 @@ impl Parser<'_> {
     }
 
     #[inline(never)]
-    fn storage(&mut self, specifiers: &mut Specifiers) -> Parsed<bool> {
+    fn storage(&mut self, specifiers: &mut Specifiers) -> ParseResult<bool> {
         let storage = match self.name() {
             Some(word::TYPEDEF) => Storage::Typedef,
             Some(word::EXTERN) => Storage::Extern,
@@ -236,7 +236,7 @@ impl Parser<'_> {
 
     /// Counts a word of an arithmetic type.
     #[inline(never)]
-    fn arithmetic_word(&mut self, name: Name, words: &mut Words) -> Parsed<bool> {
+    fn arithmetic_word(&mut self, name: Name, words: &mut ArithmeticWords) -> ParseResult<bool> {
         let base = match name {
             word::VOID => BaseType::Void,
             word::CHAR => BaseType::Char,
@@ -268,8 +268,8 @@ impl Parser<'_> {
 
     /// The type that the counted words name.
     #[inline(never)]
-    fn basic_type(&mut self, words: Words, span: Span) -> Parsed<BasicType> {
-        let Words { base, short, long, signed, unsigned } = words;
+    fn basic_type(&mut self, words: ArithmeticWords, span: Span) -> ParseResult<BasicType> {
+        let ArithmeticWords { base, short, long, signed, unsigned } = words;
         let is_unsigned = unsigned > 0;
         let pick = |plain, other| if is_unsigned { other } else { plain };
         let is_plain = signed == 0 && unsigned == 0;
@@ -306,7 +306,7 @@ impl Parser<'_> {
         name: Name,
         is_open: bool,
         specifiers: &Specifiers,
-    ) -> Parsed<Option<TypeSpecifier>> {
+    ) -> ParseResult<Option<TypeSpecifier>> {
         let is_type = matches!(
             name,
             word::STRUCT
@@ -352,25 +352,25 @@ impl Parser<'_> {
     /// A `typedef` name, `va_list`, or a name used like a type.
     fn named_type(&mut self, name: Name) -> Option<TypeSpecifier> {
         match self.scopes.meaning(name) {
-            Meaning::Type => {
+            NameMeaning::Type => {
                 self.at += 1;
                 Some(TypeSpecifier::Typedef(name))
             }
-            Meaning::MissingType => {
+            NameMeaning::MissingType => {
                 let span = self.next().span;
                 Some(Self::missing_type(span))
             }
-            Meaning::Unknown if name == word::VA_LIST => {
+            NameMeaning::Unknown if name == word::VA_LIST => {
                 let span = self.next().span;
                 Some(va_list(span))
             }
-            Meaning::Unknown | Meaning::Ordinary => None,
+            NameMeaning::Unknown | NameMeaning::Ordinary => None,
         }
     }
 
     /// `typeof (expression)` or `typeof (type)`
     #[inline(never)]
-    fn typeof_(&mut self) -> Parsed<TypeSpecifier> {
+    fn typeof_(&mut self) -> ParseResult<TypeSpecifier> {
         self.at += 1;
         if self.kind() != TokenKind::LeftParen {
             return self.fail_expected("`(` after `typeof`");
@@ -386,7 +386,7 @@ impl Parser<'_> {
     }
 
     #[inline(never)]
-    fn two_types<T>(&mut self, specifiers: &Specifiers) -> Parsed<T> {
+    fn two_types<T>(&mut self, specifiers: &Specifiers) -> ParseResult<T> {
         let token = self.peek();
         let message = format!("two types in one declaration; `{}` is the second", self.text(token.span));
         let diagnostic =
@@ -404,7 +404,7 @@ impl Parser<'_> {
     }
 
     /// Reads the balanced `((aligned(8), …))` of an attribute.
-    fn attribute_lists(&mut self, alignments: &mut Vec<Alignment>) -> Parsed<()> {
+    fn attribute_lists(&mut self, alignments: &mut Vec<Alignment>) -> ParseResult<()> {
         if self.kind() != TokenKind::LeftParen {
             return self.fail_expected("`(`");
         }

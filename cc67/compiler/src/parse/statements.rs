@@ -6,11 +6,11 @@ use crate::names::word;
 use crate::pp::{Flags, TokenKind};
 use crate::source::Span;
 
-use super::{Parsed, Parser, Reported};
+use super::{ErrorReported, ParseResult, Parser};
 
 impl Parser<'_> {
     /// `{ … }`: its statements.
-    pub(super) fn block(&mut self) -> Parsed<Vec<Statement>> {
+    pub(super) fn block(&mut self) -> ParseResult<Vec<Statement>> {
         let depth = self.recovery.open.len();
         self.open();
         self.scopes.enter();
@@ -38,7 +38,7 @@ impl Parser<'_> {
         let (start, index, open) = (self.peek().span, self.at, self.recovery.open.len());
         match self.nested(Self::any_statement) {
             Ok(statement) => statement,
-            Err(Reported) => {
+            Err(ErrorReported) => {
                 self.skip_statement(open);
                 if self.at == index
                     && !self.recovery.is_stopped
@@ -55,14 +55,14 @@ impl Parser<'_> {
     }
 
     /// The statement that a condition, a loop or a label governs.
-    fn body(&mut self) -> Parsed<Box<Statement>> {
+    fn body(&mut self) -> ParseResult<Box<Statement>> {
         if self.kind() == TokenKind::RightBrace || self.kind() == TokenKind::End {
             return self.fail_expected("a statement");
         }
         Ok(Box::new(self.statement()))
     }
 
-    fn any_statement(&mut self) -> Parsed<Statement> {
+    fn any_statement(&mut self) -> ParseResult<Statement> {
         let start = self.peek().span;
         match self.kind() {
             TokenKind::LeftBrace => {
@@ -80,7 +80,7 @@ impl Parser<'_> {
     }
 
     /// A bracket without an opening partner, and the statement after it.
-    fn surplus_bracket(&mut self) -> Parsed<Statement> {
+    fn surplus_bracket(&mut self) -> ParseResult<Statement> {
         let token = self.next();
         let text = token.kind.punctuator().unwrap_or_default();
         self.report(Diagnostic::error(token.span, format!("extra `{text}`")).at("closes nothing"));
@@ -88,13 +88,13 @@ impl Parser<'_> {
             self.at += 1;
         }
         match self.kind() {
-            TokenKind::RightBrace | TokenKind::End => Err(Reported),
+            TokenKind::RightBrace | TokenKind::End => Err(ErrorReported),
             _ => self.any_statement(),
         }
     }
 
     /// A statement that begins with a word.
-    fn word_statement(&mut self, start: Span) -> Parsed<Statement> {
+    fn word_statement(&mut self, start: Span) -> ParseResult<Statement> {
         let Some(name) = self.name() else { return self.expression_statement(start) };
         if !name.is_keyword() && self.kind_at(1) == TokenKind::Colon {
             return self.label(start);
@@ -148,7 +148,7 @@ impl Parser<'_> {
         Statement { kind, span: self.since(start) }
     }
 
-    fn expression_statement(&mut self, start: Span) -> Parsed<Statement> {
+    fn expression_statement(&mut self, start: Span) -> ParseResult<Statement> {
         let index = self.at;
         let expression = self.expression()?;
         if self.kind() == TokenKind::LeftBrace
@@ -169,7 +169,7 @@ impl Parser<'_> {
     }
 
     /// `( … )` after `if`, `while` and the like. If it cannot be parsed the statement is parsed all the same.
-    fn condition(&mut self, keyword: &str) -> Parsed<Expression> {
+    fn condition(&mut self, keyword: &str) -> ParseResult<Expression> {
         let start = self.peek();
         if start.kind != TokenKind::LeftParen {
             return self.bare_condition(keyword);
@@ -180,8 +180,10 @@ impl Parser<'_> {
             self.expression().and_then(|condition| self.close(TokenKind::RightParen).map(|_| condition));
         match condition {
             Ok(condition) => Ok(condition),
-            Err(Reported) if self.recovery.is_stopped || self.recovery.is_unwinding => Err(Reported),
-            Err(Reported) => {
+            Err(ErrorReported) if self.recovery.is_stopped || self.recovery.is_unwinding => {
+                Err(ErrorReported)
+            }
+            Err(ErrorReported) => {
                 self.skip_to_close(open);
                 Ok(Expression { kind: ExpressionKind::Error, span: self.since(start.span) })
             }
@@ -189,7 +191,7 @@ impl Parser<'_> {
     }
 
     /// A condition without its parentheses, as in `if x > 3:`.
-    fn bare_condition(&mut self, keyword: &str) -> Parsed<Expression> {
+    fn bare_condition(&mut self, keyword: &str) -> ParseResult<Expression> {
         let start = self.peek();
         let expected = format!("`(` after `{keyword}`");
         let begins_operand = matches!(
@@ -207,7 +209,7 @@ impl Parser<'_> {
         Ok(Expression { kind: ExpressionKind::Error, span: self.since(start.span) })
     }
 
-    fn if_(&mut self) -> Parsed<StatementKind> {
+    fn if_(&mut self) -> ParseResult<StatementKind> {
         self.at += 1;
         let condition = self.condition("if")?;
         self.skip_then();
@@ -247,13 +249,13 @@ impl Parser<'_> {
         true
     }
 
-    fn while_(&mut self) -> Parsed<StatementKind> {
+    fn while_(&mut self) -> ParseResult<StatementKind> {
         self.at += 1;
         let condition = self.condition("while")?;
         Ok(StatementKind::While { condition, body: self.body()? })
     }
 
-    fn do_while(&mut self, start: Span) -> Parsed<Statement> {
+    fn do_while(&mut self, start: Span) -> ParseResult<Statement> {
         self.at += 1;
         let body = self.body()?;
         if self.take_word(word::WHILE).is_none() {
@@ -265,7 +267,7 @@ impl Parser<'_> {
         Ok(Statement { kind: StatementKind::DoWhile { body, condition }, span })
     }
 
-    fn for_(&mut self) -> Parsed<StatementKind> {
+    fn for_(&mut self) -> ParseResult<StatementKind> {
         self.at += 1;
         if self.kind() != TokenKind::LeftParen {
             return self.fail_expected("`(` after `for`");
@@ -276,8 +278,10 @@ impl Parser<'_> {
         let head = self.for_head();
         let head = match head {
             Ok(head) => Ok(head),
-            Err(Reported) if self.recovery.is_stopped || self.recovery.is_unwinding => Err(Reported),
-            Err(Reported) => {
+            Err(ErrorReported) if self.recovery.is_stopped || self.recovery.is_unwinding => {
+                Err(ErrorReported)
+            }
+            Err(ErrorReported) => {
                 self.skip_to_close(open);
                 let span = self.since(start);
                 let init = Box::new(Statement { kind: StatementKind::Empty, span });
@@ -292,7 +296,7 @@ impl Parser<'_> {
     }
 
     /// `init; condition; step)`
-    fn for_head(&mut self) -> Parsed<(Box<Statement>, Option<Expression>, Option<Expression>)> {
+    fn for_head(&mut self) -> ParseResult<(Box<Statement>, Option<Expression>, Option<Expression>)> {
         let start = self.peek().span;
         let init = match self.name() {
             _ if self.kind() == TokenKind::Semicolon => {
@@ -315,7 +319,7 @@ impl Parser<'_> {
         Ok((Box::new(init), condition, step))
     }
 
-    fn for_semicolon(&mut self, what: &str) -> Parsed<()> {
+    fn for_semicolon(&mut self, what: &str) -> ParseResult<()> {
         if self.take(TokenKind::Semicolon).is_some() {
             return Ok(());
         }
@@ -328,13 +332,13 @@ impl Parser<'_> {
         self.fail(Diagnostic::error(found.span, message).help(help))
     }
 
-    fn switch(&mut self) -> Parsed<StatementKind> {
+    fn switch(&mut self) -> ParseResult<StatementKind> {
         self.at += 1;
         let value = self.condition("switch")?;
         Ok(StatementKind::Switch { value, body: self.body()? })
     }
 
-    fn case(&mut self) -> Parsed<StatementKind> {
+    fn case(&mut self) -> ParseResult<StatementKind> {
         self.at += 1;
         let first = self.conditional()?;
         let last = match self.take(TokenKind::Ellipsis) {
@@ -346,7 +350,7 @@ impl Parser<'_> {
     }
 
     /// Takes `:`; a `;` in its place is accepted after an error.
-    fn colon(&mut self, what: &str) -> Parsed<()> {
+    fn colon(&mut self, what: &str) -> ParseResult<()> {
         if self.take(TokenKind::Colon).is_some() {
             return Ok(());
         }
@@ -362,7 +366,7 @@ impl Parser<'_> {
         self.fail_expected(&format!("`:` {what}"))
     }
 
-    fn label(&mut self, start: Span) -> Parsed<Statement> {
+    fn label(&mut self, start: Span) -> ParseResult<Statement> {
         let token = self.next();
         self.at += 1;
         self.attributes()?;
@@ -372,7 +376,7 @@ impl Parser<'_> {
     }
 
     /// Parses the statement after a label, which may be missing at the end of a block.
-    fn labelled(&mut self) -> Parsed<Box<Statement>> {
+    fn labelled(&mut self) -> ParseResult<Box<Statement>> {
         if self.kind() == TokenKind::RightBrace {
             return Ok(Box::new(Statement { kind: StatementKind::Empty, span: self.end_of_last() }));
         }
@@ -380,7 +384,7 @@ impl Parser<'_> {
     }
 
     /// `goto`, `break`, `continue`, `return`
-    fn jump(&mut self, start: Span) -> Parsed<Statement> {
+    fn jump(&mut self, start: Span) -> ParseResult<Statement> {
         let keyword = self.next();
         let kind = match keyword.name {
             word::BREAK => StatementKind::Break,

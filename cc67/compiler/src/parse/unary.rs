@@ -5,11 +5,11 @@ use crate::diag::Diagnostic;
 use crate::names::word;
 use crate::pp::{Flags, Token, TokenKind};
 
-use super::{NESTING, Parsed, Parser};
+use super::{NESTING, ParseResult, Parser};
 
 impl Parser<'_> {
     /// An operand with its prefix and postfix operators.
-    pub(super) fn unary(&mut self) -> Parsed<Expression> {
+    pub(super) fn unary(&mut self) -> ParseResult<Expression> {
         let operand = match self.kind() {
             TokenKind::LeftParen if self.is_type_at(1) => return self.cast(),
             TokenKind::LeftParen if self.kind_at(1) != TokenKind::LeftBrace => self.parenthesized()?,
@@ -35,7 +35,7 @@ impl Parser<'_> {
     }
 
     /// `(expression)`
-    fn parenthesized(&mut self) -> Parsed<Expression> {
+    fn parenthesized(&mut self) -> ParseResult<Expression> {
         let open = self.open().span;
         let mut inner = self.nested(Self::expression)?;
         self.close(TokenKind::RightParen)?;
@@ -45,7 +45,7 @@ impl Parser<'_> {
 
     /// A prefix operator with its operand.
     #[inline(never)]
-    fn prefix(&mut self) -> Parsed<Expression> {
+    fn prefix(&mut self) -> ParseResult<Expression> {
         let token = self.next();
         let operator = match token.kind {
             TokenKind::And => UnaryOperator::AddressOf,
@@ -66,7 +66,7 @@ impl Parser<'_> {
     }
 
     #[inline(never)]
-    fn prefix_increment(&mut self) -> Parsed<Expression> {
+    fn prefix_increment(&mut self) -> ParseResult<Expression> {
         let token = self.next();
         let operand = Box::new(self.nested(Self::unary)?);
         let span = token.span.to(operand.span);
@@ -76,7 +76,7 @@ impl Parser<'_> {
 
     /// `&&label`
     #[inline(never)]
-    fn label_address(&mut self) -> Parsed<Expression> {
+    fn label_address(&mut self) -> ParseResult<Expression> {
         let token = self.next();
         if self.is_identifier_at(0) {
             let label = self.next();
@@ -91,7 +91,7 @@ impl Parser<'_> {
 
     /// `(type) operand` or `(type) { … }`
     #[inline(never)]
-    fn cast(&mut self) -> Parsed<Expression> {
+    fn cast(&mut self) -> ParseResult<Expression> {
         let open = self.open();
         let ty = Box::new(self.type_name()?);
         self.close(TokenKind::RightParen)?;
@@ -107,7 +107,7 @@ impl Parser<'_> {
     }
 
     #[inline(never)]
-    fn sizeof(&mut self) -> Parsed<Expression> {
+    fn sizeof(&mut self) -> ParseResult<Expression> {
         let token = self.next();
         if self.kind() == TokenKind::LeftParen && self.is_type_at(1) {
             let open = self.open();
@@ -131,7 +131,7 @@ impl Parser<'_> {
 
     /// `_Alignof (type)`; the GNU form also takes an expression.
     #[inline(never)]
-    fn alignof(&mut self) -> Parsed<Expression> {
+    fn alignof(&mut self) -> ParseResult<Expression> {
         let token = self.next();
         if self.kind() != TokenKind::LeftParen || !self.is_type_at(1) {
             let operand = Box::new(self.nested(Self::unary)?);
@@ -146,7 +146,7 @@ impl Parser<'_> {
 
     /// Parses the postfix operators after an operand.
     #[inline(never)]
-    fn postfix(&mut self, mut operand: Expression) -> Parsed<Expression> {
+    fn postfix(&mut self, mut operand: Expression) -> ParseResult<Expression> {
         let mut count = 0;
         loop {
             count += 1;
@@ -185,7 +185,7 @@ impl Parser<'_> {
     }
 
     /// `(a, b)`
-    fn arguments(&mut self) -> Parsed<Vec<Expression>> {
+    fn arguments(&mut self) -> ParseResult<Vec<Expression>> {
         self.open();
         let mut arguments = Vec::new();
         if self.kind() != TokenKind::RightParen {
@@ -218,7 +218,7 @@ impl Parser<'_> {
 
     /// A constant, a name, or a statement expression.
     #[inline(never)]
-    fn primary(&mut self) -> Parsed<Expression> {
+    fn primary(&mut self) -> ParseResult<Expression> {
         match self.kind() {
             TokenKind::Identifier => self.identifier(),
             TokenKind::Number => {
@@ -235,7 +235,7 @@ impl Parser<'_> {
         }
     }
 
-    fn identifier(&mut self) -> Parsed<Expression> {
+    fn identifier(&mut self) -> ParseResult<Expression> {
         let token = self.peek();
         if let Some(builtin) = self.builtin(token) {
             return builtin;
@@ -256,7 +256,7 @@ impl Parser<'_> {
         Ok(Expression { kind, span: token.span })
     }
 
-    fn keyword_as_operand(&mut self, token: Token) -> Parsed<Expression> {
+    fn keyword_as_operand(&mut self, token: Token) -> ParseResult<Expression> {
         let spelling = self.spelling(token.name).to_owned();
         let diagnostic = Diagnostic::error(token.span, format!("expected an expression, found `{spelling}`"));
         self.fail(if self.is_declaration_word(token.name) {
@@ -267,7 +267,7 @@ impl Parser<'_> {
     }
 
     /// `({ … })`
-    fn statement_expression(&mut self) -> Parsed<Expression> {
+    fn statement_expression(&mut self) -> ParseResult<Expression> {
         let open = self.open();
         let statements = self.nested(Self::block)?;
         self.close(TokenKind::RightParen)?;

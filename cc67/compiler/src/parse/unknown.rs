@@ -12,7 +12,7 @@ use crate::words::foreign as foreign_words;
 use crate::words::suggest;
 
 use super::Parser;
-use super::scopes::Meaning;
+use super::scopes::NameMeaning;
 
 /// Types of the board's header.
 const HEADER_TYPES: &[&str] = &[
@@ -47,7 +47,7 @@ impl Parser<'_> {
     /// *name` where `name` is undeclared.
     pub(super) fn is_unknown_type(&self) -> bool {
         let Some(name) = self.name().filter(|name| !name.is_keyword()) else { return false };
-        if self.is_type_word(name) || self.scopes.meaning(name) != Meaning::Unknown {
+        if self.is_type_word(name) || self.scopes.meaning(name) != NameMeaning::Unknown {
             return false;
         }
         match self.kind_at(1) {
@@ -120,6 +120,6 @@ impl Parser<'_> {
 
     /// Reports whether the board's header was read: it declares the persistent memory.
     fn has_board_header(&self) -> bool {
-        self.names.find("persist").is_some_and(|name| self.scopes.meaning(name) != Meaning::Unknown)
+        self.names.find("persist").is_some_and(|name| self.scopes.meaning(name) != NameMeaning::Unknown)
     }
 }

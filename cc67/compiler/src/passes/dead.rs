@@ -49,14 +49,14 @@ fn for_each_read(function: &Function, inst: &Inst, mut visit: impl FnMut(ValueId
 
 /// The next use of a value, seen from inside a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Ahead {
+struct NextUse {
     region: u32,
     is_read: bool,
 }
 
 struct Remover {
     reads: SecondaryMap<ValueId, u32>,
-    ahead: SecondaryMap<ValueId, Ahead>,
+    ahead: SecondaryMap<ValueId, NextUse>,
     region: u32,
 }
 
@@ -66,7 +66,7 @@ impl Remover {
         let leaves =
             matches!(function.blocks[id].terminator, Terminator::Return(_) | Terminator::Unreachable);
         if let Some(Operand::Value(value)) = function.blocks[id].terminator.operand() {
-            self.ahead[value] = Ahead { region: self.region, is_read: true };
+            self.ahead[value] = NextUse { region: self.region, is_read: true };
         }
         let mut insts = std::mem::take(&mut function.blocks[id].insts);
         let mut kept = insts.len();
@@ -92,10 +92,10 @@ impl Remover {
                     *dst = None.into();
                 }
             }
-            self.ahead[dst] = Ahead { region: self.region, is_read: false };
+            self.ahead[dst] = NextUse { region: self.region, is_read: false };
         }
         let (region, ahead) = (self.region, &mut self.ahead);
-        for_each_read(function, inst, |value| ahead[value] = Ahead { region, is_read: true });
+        for_each_read(function, inst, |value| ahead[value] = NextUse { region, is_read: true });
         true
     }
 

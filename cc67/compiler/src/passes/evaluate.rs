@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::loops::{self, LoopRange};
-use super::strength::{self, Simplified};
+use super::strength::{self, Simplification};
 use crate::ir::function::{Block, Function};
 use crate::ir::inst::{BlockId, Constant, Inst, InstKind, Operand, Terminator, ValueId};
 
@@ -111,7 +111,7 @@ impl Machine<'_> {
 
     fn inst(&mut self, kind: &InstKind) -> Option<()> {
         let (dst, simplified) = match *kind {
-            InstKind::Copy { dst, src } => (dst, Simplified::Operand(self.known(src)?)),
+            InstKind::Copy { dst, src } => (dst, Simplification::Operand(self.known(src)?)),
             InstKind::Unary { op, dst, src } => (dst, strength::unary(op, self.known(src)?)),
             InstKind::Binary { op, dst, a, b } => {
                 let class = self.function.values[dst];
@@ -129,7 +129,7 @@ impl Machine<'_> {
             | InstKind::Call { .. }
             | InstKind::Cost { .. } => return None,
         };
-        let Simplified::Operand(Operand::Constant(value)) = simplified else { return None };
+        let Simplification::Operand(Operand::Constant(value)) = simplified else { return None };
         self.values.insert(dst, Some(value));
         Some(())
     }

@@ -6,14 +6,14 @@
 
 use cranelift_entity::SecondaryMap;
 
-use super::strength::{self, Simplified};
+use super::strength::{self, Simplification};
 use crate::ir::function::{Function, table};
 use crate::ir::inst::{Address, Base, Constant, Inst, InstKind, Operand, Terminator, ValueId};
 use crate::ir::operators::{BinaryOp, CompareOp};
 
 /// The fact known about a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Known {
+enum KnownValue {
     /// Nothing.
     Nothing,
     /// Equal to an operand.
@@ -27,7 +27,7 @@ enum Known {
 /// A fact and the state in which it was found.
 #[derive(Clone, Copy, Debug)]
 struct Fact {
-    known: Known,
+    known: KnownValue,
     /// The region of code in which it holds.
     region: u32,
     /// The number of writes of the value to which the fact refers.
@@ -36,7 +36,7 @@ struct Fact {
 
 impl Default for Fact {
     fn default() -> Self {
-        Self { known: Known::Nothing, region: u32::MAX, writes: 0 }
+        Self { known: KnownValue::Nothing, region: u32::MAX, writes: 0 }
     }
 }
 
@@ -90,31 +90,33 @@ impl Folder {
     /// The replacement of an operand: the constant or the older value to which it is known to be equal.
     fn resolve(&self, operand: Operand) -> Operand {
         match operand.as_value().map(|value| self.known(value)) {
-            Some(Known::Operand(known)) => known,
+            Some(KnownValue::Operand(known)) => known,
             _ => operand,
         }
     }
 
     /// The fact known about a value at this point.
-    fn known(&self, value: ValueId) -> Known {
+    fn known(&self, value: ValueId) -> KnownValue {
         let fact = self.facts[value];
         let is_current = fact.region == self.region
             && refers_to(fact.known).is_none_or(|of| self.writes[of] == fact.writes);
-        if is_current { fact.known } else { Known::Nothing }
+        if is_current { fact.known } else { KnownValue::Nothing }
     }
 
     /// Records the facts about the value that an instruction writes.
     fn learn(&mut self, dst: ValueId, kind: &InstKind) {
         let known = match *kind {
-            InstKind::Copy { src, .. } => Known::Operand(src),
+            InstKind::Copy { src, .. } => KnownValue::Operand(src),
             InstKind::FrameAddress { slot, offset, .. } => {
-                Known::Address(Address { base: Base::Slot(slot), offset })
+                KnownValue::Address(Address { base: Base::Slot(slot), offset })
             }
             InstKind::Binary { op: BinaryOp::Add, a: Operand::Value(base), b, .. } => match b.as_int() {
-                Some(offset) => Known::Address(Address { base: Base::Value(base), offset }),
-                None => Known::Nothing,
+                Some(offset) => KnownValue::Address(Address { base: Base::Value(base), offset }),
+                None => KnownValue::Nothing,
             },
-            InstKind::Compare { op: CompareOp::Equal, a, b, .. } if b.as_int() == Some(0) => Known::IsZero(a),
+            InstKind::Compare { op: CompareOp::Equal, a, b, .. } if b.as_int() == Some(0) => {
+                KnownValue::IsZero(a)
+            }
             InstKind::Unary { .. }
             | InstKind::Binary { .. }
             | InstKind::Compare { .. }
@@ -124,11 +126,11 @@ impl Folder {
             | InstKind::CopyMemory { .. }
             | InstKind::ClearMemory { .. }
             | InstKind::Call { .. }
-            | InstKind::Cost { .. } => Known::Nothing,
+            | InstKind::Cost { .. } => KnownValue::Nothing,
         };
         let of = refers_to(known);
         // `i = i + 1` yields no fact about the new `i`.
-        let known = if of == Some(dst) { Known::Nothing } else { known };
+        let known = if of == Some(dst) { KnownValue::Nothing } else { known };
         self.facts[dst] = Fact { known, region: self.region, writes: of.map_or(0, |of| self.writes[of]) };
     }
 
@@ -175,8 +177,8 @@ impl Folder {
     fn shortened(&self, address: Address) -> Address {
         match address.base {
             Base::Value(value) => match self.known(value) {
-                Known::Address(known) => known.plus(address.offset),
-                Known::Nothing | Known::Operand(_) | Known::IsZero(_) => address,
+                KnownValue::Address(known) => known.plus(address.offset),
+                KnownValue::Nothing | KnownValue::Operand(_) | KnownValue::IsZero(_) => address,
             },
             Base::Absolute | Base::Slot(_) | Base::Symbol(_) => address,
         }
@@ -200,21 +202,23 @@ impl Folder {
             | InstKind::Cost { .. } => return,
         };
         match simplified {
-            Simplified::No => {}
-            Simplified::Operand(src) => inst.kind = InstKind::Copy { dst, src },
-            Simplified::Binary(op, a, b) => inst.kind = InstKind::Binary { op, dst, a, b },
-            Simplified::Compare(op, a, b) => inst.kind = InstKind::Compare { op, dst, a, b },
+            Simplification::No => {}
+            Simplification::Operand(src) => inst.kind = InstKind::Copy { dst, src },
+            Simplification::Binary(op, a, b) => inst.kind = InstKind::Binary { op, dst, a, b },
+            Simplification::Compare(op, a, b) => inst.kind = InstKind::Compare { op, dst, a, b },
         }
     }
 
     /// A comparison; `(x == 0) == 0` and `(x == 0) != 0` are reduced to `x`.
-    fn compare(&self, op: CompareOp, a: Operand, b: Operand) -> Simplified {
+    fn compare(&self, op: CompareOp, a: Operand, b: Operand) -> Simplification {
         if let (Operand::Value(value), Some(0)) = (a, b.as_int())
-            && let Known::IsZero(inner) = self.known(value)
+            && let KnownValue::IsZero(inner) = self.known(value)
         {
             match op {
-                CompareOp::Equal => return Simplified::Compare(CompareOp::NotEqual, inner, Operand::int(0)),
-                CompareOp::NotEqual => return Simplified::Operand(a),
+                CompareOp::Equal => {
+                    return Simplification::Compare(CompareOp::NotEqual, inner, Operand::int(0));
+                }
+                CompareOp::NotEqual => return Simplification::Operand(a),
                 CompareOp::Less
                 | CompareOp::LessEqual
                 | CompareOp::LessUnsigned
@@ -236,7 +240,7 @@ impl Folder {
                     return true;
                 }
                 if let Some(value) = condition.as_value()
-                    && let Known::IsZero(inner) = self.known(value)
+                    && let KnownValue::IsZero(inner) = self.known(value)
                 {
                     *terminator = Terminator::Branch { condition: inner, then: *otherwise, otherwise: *then };
                 }
@@ -254,10 +258,10 @@ impl Folder {
 }
 
 /// The other value on which a fact depends.
-const fn refers_to(known: Known) -> Option<ValueId> {
+const fn refers_to(known: KnownValue) -> Option<ValueId> {
     match known {
-        Known::Operand(operand) | Known::IsZero(operand) => operand.as_value(),
-        Known::Address(Address { base: Base::Value(value), .. }) => Some(value),
-        Known::Nothing | Known::Address(_) => None,
+        KnownValue::Operand(operand) | KnownValue::IsZero(operand) => operand.as_value(),
+        KnownValue::Address(Address { base: Base::Value(value), .. }) => Some(value),
+        KnownValue::Nothing | KnownValue::Address(_) => None,
     }
 }

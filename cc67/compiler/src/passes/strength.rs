@@ -9,7 +9,7 @@ use crate::ir::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp};
 
 /// The replacement of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Simplified {
+pub(super) enum Simplification {
     /// Nothing better.
     No,
     /// A copy.
@@ -20,15 +20,15 @@ pub(super) enum Simplified {
     Compare(CompareOp, Operand, Operand),
 }
 
-impl From<Option<Constant>> for Simplified {
+impl From<Option<Constant>> for Simplification {
     fn from(constant: Option<Constant>) -> Self {
         constant.map_or(Self::No, |constant| Self::Operand(constant.into()))
     }
 }
 
-pub(super) fn unary(op: UnaryOp, src: Operand) -> Simplified {
-    let Operand::Constant(constant) = src else { return Simplified::No };
-    Simplified::from(match (op, constant) {
+pub(super) fn unary(op: UnaryOp, src: Operand) -> Simplification {
+    let Operand::Constant(constant) = src else { return Simplification::No };
+    Simplification::from(match (op, constant) {
         (UnaryOp::Negate, Constant::I32(value)) => Some(Constant::I32(value.wrapping_neg())),
         (UnaryOp::Negate, Constant::I64(value)) => Some(Constant::I64(value.wrapping_neg())),
         (UnaryOp::Negate, Constant::F32(bits)) => Some(Constant::F32(bits ^ (1 << 31))),
@@ -39,24 +39,26 @@ pub(super) fn unary(op: UnaryOp, src: Operand) -> Simplified {
     })
 }
 
-pub(super) fn binary(op: BinaryOp, a: Operand, b: Operand, class: Class) -> Simplified {
+pub(super) fn binary(op: BinaryOp, a: Operand, b: Operand, class: Class) -> Simplification {
     match (a, b) {
-        (Operand::Constant(x), Operand::Constant(y)) => Simplified::from(binary_constant(op, x, y)),
+        (Operand::Constant(x), Operand::Constant(y)) => Simplification::from(binary_constant(op, x, y)),
         (Operand::Constant(_), Operand::Value(_)) if op.is_commutative() => match right_constant(op, b, a) {
-            Simplified::No => Simplified::Binary(op, b, a),
-            better @ (Simplified::Operand(_) | Simplified::Binary(..) | Simplified::Compare(..)) => better,
+            Simplification::No => Simplification::Binary(op, b, a),
+            better @ (Simplification::Operand(_)
+            | Simplification::Binary(..)
+            | Simplification::Compare(..)) => better,
         },
         (Operand::Value(_), Operand::Constant(_)) => right_constant(op, a, b),
         (Operand::Value(x), Operand::Value(y)) if x == y && class.is_integer() => same(op, a, class),
-        _ => Simplified::No,
+        _ => Simplification::No,
     }
 }
 
 /// `a op a`
-fn same(op: BinaryOp, a: Operand, class: Class) -> Simplified {
+fn same(op: BinaryOp, a: Operand, class: Class) -> Simplification {
     match op {
-        BinaryOp::Subtract | BinaryOp::Xor => Simplified::Operand(class.zero().into()),
-        BinaryOp::And | BinaryOp::Or => Simplified::Operand(a),
+        BinaryOp::Subtract | BinaryOp::Xor => Simplification::Operand(class.zero().into()),
+        BinaryOp::And | BinaryOp::Or => Simplification::Operand(a),
         BinaryOp::Add
         | BinaryOp::Multiply
         | BinaryOp::Divide
@@ -65,30 +67,30 @@ fn same(op: BinaryOp, a: Operand, class: Class) -> Simplified {
         | BinaryOp::RemainderUnsigned
         | BinaryOp::ShiftLeft
         | BinaryOp::ShiftRight
-        | BinaryOp::ShiftRightUnsigned => Simplified::No,
+        | BinaryOp::ShiftRightUnsigned => Simplification::No,
     }
 }
 
 /// `a op constant`
-fn right_constant(op: BinaryOp, a: Operand, b: Operand) -> Simplified {
-    let Operand::Constant(constant) = b else { return Simplified::No };
+fn right_constant(op: BinaryOp, a: Operand, b: Operand) -> Simplification {
+    let Operand::Constant(constant) = b else { return Simplification::No };
     let (number, is_long) = match constant {
         Constant::I32(value) => (i64::from(value), false),
         Constant::I64(value) => (value, true),
         Constant::F32(_) | Constant::F64(_) => return floating(op, a, constant),
-        Constant::Symbol(..) => return Simplified::No,
+        Constant::Symbol(..) => return Simplification::No,
     };
     if is_identity(op, number) {
-        return Simplified::Operand(a);
+        return Simplification::Operand(a);
     }
     if is_zero(op, number) {
-        return Simplified::Operand(constant.class().zero().into());
+        return Simplification::Operand(constant.class().zero().into());
     }
     if op == BinaryOp::Or && number == -1 {
-        return Simplified::Operand(b);
+        return Simplification::Operand(b);
     }
     if op == BinaryOp::Subtract && !is_long {
-        return Simplified::Binary(BinaryOp::Add, a, Operand::int((number as i32).wrapping_neg()));
+        return Simplification::Binary(BinaryOp::Add, a, Operand::int((number as i32).wrapping_neg()));
     }
     power_of_two(op, a, constant)
 }
@@ -122,22 +124,22 @@ const fn is_identity(op: BinaryOp, number: i64) -> bool {
 }
 
 /// Multiplication and unsigned division by a power of two.
-fn power_of_two(op: BinaryOp, a: Operand, constant: Constant) -> Simplified {
+fn power_of_two(op: BinaryOp, a: Operand, constant: Constant) -> Simplification {
     let (bits, is_long) = match constant {
         Constant::I32(value) => (u64::from(value.cast_unsigned()), false),
         Constant::I64(value) => (value.cast_unsigned(), true),
-        Constant::F32(_) | Constant::F64(_) | Constant::Symbol(..) => return Simplified::No,
+        Constant::F32(_) | Constant::F64(_) | Constant::Symbol(..) => return Simplification::No,
     };
     if !bits.is_power_of_two() {
-        return Simplified::No;
+        return Simplification::No;
     }
     let shift = Operand::int(bits.trailing_zeros().cast_signed());
     let mask = bits - 1;
     let mask = if is_long { Constant::I64(mask.cast_signed()) } else { Constant::I32(mask as u32 as i32) };
     match op {
-        BinaryOp::Multiply => Simplified::Binary(BinaryOp::ShiftLeft, a, shift),
-        BinaryOp::DivideUnsigned => Simplified::Binary(BinaryOp::ShiftRightUnsigned, a, shift),
-        BinaryOp::RemainderUnsigned => Simplified::Binary(BinaryOp::And, a, mask.into()),
+        BinaryOp::Multiply => Simplification::Binary(BinaryOp::ShiftLeft, a, shift),
+        BinaryOp::DivideUnsigned => Simplification::Binary(BinaryOp::ShiftRightUnsigned, a, shift),
+        BinaryOp::RemainderUnsigned => Simplification::Binary(BinaryOp::And, a, mask.into()),
         BinaryOp::Add
         | BinaryOp::Subtract
         | BinaryOp::Divide
@@ -147,12 +149,12 @@ fn power_of_two(op: BinaryOp, a: Operand, constant: Constant) -> Simplified {
         | BinaryOp::Xor
         | BinaryOp::ShiftLeft
         | BinaryOp::ShiftRight
-        | BinaryOp::ShiftRightUnsigned => Simplified::No,
+        | BinaryOp::ShiftRightUnsigned => Simplification::No,
     }
 }
 
 /// Division by a floating power of two is a multiplication by its inverse, which is exact.
-fn floating(op: BinaryOp, a: Operand, b: Constant) -> Simplified {
+fn floating(op: BinaryOp, a: Operand, b: Constant) -> Simplification {
     let inverse = match b {
         Constant::F32(bits) => {
             let inverse = 1.0 / f32::from_bits(bits);
@@ -168,8 +170,10 @@ fn floating(op: BinaryOp, a: Operand, b: Constant) -> Simplified {
         Constant::I32(_) | Constant::I64(_) | Constant::Symbol(..) => None,
     };
     match inverse {
-        Some(inverse) if op == BinaryOp::Divide => Simplified::Binary(BinaryOp::Multiply, a, inverse.into()),
-        Some(_) | None => Simplified::No,
+        Some(inverse) if op == BinaryOp::Divide => {
+            Simplification::Binary(BinaryOp::Multiply, a, inverse.into())
+        }
+        Some(_) | None => Simplification::No,
     }
 }
 
@@ -200,11 +204,13 @@ fn binary_constant(op: BinaryOp, a: Constant, b: Constant) -> Option<Constant> {
     }
 }
 
-pub(super) fn compare(op: CompareOp, a: Operand, b: Operand) -> Simplified {
+pub(super) fn compare(op: CompareOp, a: Operand, b: Operand) -> Simplification {
     let (Operand::Constant(a), Operand::Constant(b)) = (a, b) else {
         return match (a, b) {
-            (Operand::Constant(_), Operand::Value(_)) if op.is_symmetric() => Simplified::Compare(op, b, a),
-            _ => Simplified::No,
+            (Operand::Constant(_), Operand::Value(_)) if op.is_symmetric() => {
+                Simplification::Compare(op, b, a)
+            }
+            _ => Simplification::No,
         };
     };
     let truth = match (a, b) {
@@ -218,9 +224,9 @@ pub(super) fn compare(op: CompareOp, a: Operand, b: Operand) -> Simplified {
             compare_floats(op, f64::from(f32::from_bits(a)), f64::from(f32::from_bits(b)))
         }
         (Constant::F64(a), Constant::F64(b)) => compare_floats(op, f64::from_bits(a), f64::from_bits(b)),
-        _ => return Simplified::No,
+        _ => return Simplification::No,
     };
-    Simplified::Operand(Operand::int(i32::from(truth)))
+    Simplification::Operand(Operand::int(i32::from(truth)))
 }
 
 fn compare_integers(op: CompareOp, signed: std::cmp::Ordering, unsigned: std::cmp::Ordering) -> bool {
@@ -243,9 +249,9 @@ fn compare_floats(op: CompareOp, a: f64, b: f64) -> bool {
     }
 }
 
-pub(super) fn convert(op: ConvertOp, src: Operand) -> Simplified {
-    let Operand::Constant(constant) = src else { return Simplified::No };
-    Simplified::from(converted(op, constant))
+pub(super) fn convert(op: ConvertOp, src: Operand) -> Simplification {
+    let Operand::Constant(constant) = src else { return Simplification::No };
+    Simplification::from(converted(op, constant))
 }
 
 /// The result of converting a constant; `None` for the address of a symbol, and for a NaN.

@@ -35,12 +35,12 @@ impl ConditionValue {
 }
 
 /// Says that the expression was reported to be wrong.
-struct Reported;
+struct ErrorReported;
 
 /// The precedence of `,`, lower than that of any operator.
 const COMMA: u8 = 0;
 
-type Evaluated = Result<ConditionValue, Reported>;
+type EvalResult = Result<ConditionValue, ErrorReported>;
 
 impl Preprocessor<'_> {
     /// The truth of the expression on the rest of the line; false, with an error, if it is not an expression.
@@ -53,7 +53,7 @@ impl Preprocessor<'_> {
         let mut parser = Parser { pp: self, tokens: &tokens, at: 0, depth: 0, is_evaluated: true };
         match parser.whole() {
             Ok(value) => value.is_true(),
-            Err(Reported) => false,
+            Err(ErrorReported) => false,
         }
     }
 
@@ -86,7 +86,7 @@ struct Parser<'a, 'b> {
 }
 
 impl Parser<'_, '_> {
-    fn whole(&mut self) -> Evaluated {
+    fn whole(&mut self) -> EvalResult {
         let value = self.conditional()?;
         match self.peek() {
             None => Ok(value),
@@ -109,7 +109,7 @@ impl Parser<'_, '_> {
     }
 
     /// `a ? b : c` and everything that binds tighter.
-    fn conditional(&mut self) -> Evaluated {
+    fn conditional(&mut self) -> EvalResult {
         self.depth += 1;
         if self.depth > limits::NESTING {
             let span = self.peek().map_or(Span::new(0, 0), |token| token.span);
@@ -131,7 +131,7 @@ impl Parser<'_, '_> {
     }
 
     /// Operators of at least the precedence `least`.
-    fn binary(&mut self, least: u8) -> Evaluated {
+    fn binary(&mut self, least: u8) -> EvalResult {
         let mut left = self.unary()?;
         while let Some(token) = self.peek() {
             let operator = token.kind.binary_operator();
@@ -153,7 +153,7 @@ impl Parser<'_, '_> {
         Ok(left)
     }
 
-    fn unary(&mut self) -> Evaluated {
+    fn unary(&mut self) -> EvalResult {
         let mut operators = Vec::new();
         while let Some(token) = self.peek() {
             if !matches!(token.kind, TokenKind::Not | TokenKind::Tilde | TokenKind::Minus | TokenKind::Plus) {
@@ -174,7 +174,7 @@ impl Parser<'_, '_> {
         Ok(value)
     }
 
-    fn primary(&mut self) -> Evaluated {
+    fn primary(&mut self) -> EvalResult {
         let Some(token) = self.peek() else {
             let span = self.tokens.last().map_or(Span::new(0, 0), |token| token.span);
             return self.fail(
@@ -210,7 +210,7 @@ impl Parser<'_, '_> {
     }
 
     /// `defined name` or `defined(name)`
-    fn defined(&mut self, operator: Token) -> Evaluated {
+    fn defined(&mut self, operator: Token) -> EvalResult {
         let has_paren = self.take(TokenKind::LeftParen);
         let Some(name) = self.peek().filter(|token| token.kind == TokenKind::Identifier) else {
             return self.fail(Diagnostic::error(operator.span, "expected a name after `defined`"));
@@ -222,9 +222,9 @@ impl Parser<'_, '_> {
         Ok(ConditionValue::truth(self.pp.is_defined(name.name)))
     }
 
-    fn number(&mut self, token: Token) -> Evaluated {
+    fn number(&mut self, token: Token) -> EvalResult {
         if token.flags.has(Flags::BROKEN) {
-            return Err(Reported);
+            return Err(ErrorReported);
         }
         let text = self.pp.spelling(token);
         match number::parse(&text) {
@@ -247,7 +247,7 @@ impl Parser<'_, '_> {
         span: Span,
         left: ConditionValue,
         right: ConditionValue,
-    ) -> Evaluated {
+    ) -> EvalResult {
         let is_unsigned = left.is_unsigned || right.is_unsigned;
         let (a, b) = (left.bits, right.bits);
         let bits = match meaning {
@@ -275,7 +275,7 @@ impl Parser<'_, '_> {
     }
 
     /// Parses an operand that is only evaluated under a condition.
-    fn when(&mut self, is_needed: bool, parse: impl Fn(&mut Self) -> Evaluated) -> Evaluated {
+    fn when(&mut self, is_needed: bool, parse: impl Fn(&mut Self) -> EvalResult) -> EvalResult {
         let outer = self.is_evaluated;
         self.is_evaluated &= is_needed;
         let value = parse(self);
@@ -293,7 +293,7 @@ impl Parser<'_, '_> {
         is_next
     }
 
-    fn expect(&mut self, kind: TokenKind) -> Result<(), Reported> {
+    fn expect(&mut self, kind: TokenKind) -> Result<(), ErrorReported> {
         if self.take(kind) {
             return Ok(());
         }
@@ -310,9 +310,9 @@ impl Parser<'_, '_> {
         String::from_utf8_lossy(&self.pp.spelling(token)).into_owned()
     }
 
-    fn fail(&mut self, diagnostic: Diagnostic) -> Evaluated {
+    fn fail(&mut self, diagnostic: Diagnostic) -> EvalResult {
         self.pp.sink.report(diagnostic);
-        Err(Reported)
+        Err(ErrorReported)
     }
 }
 

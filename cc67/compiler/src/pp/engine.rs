@@ -14,7 +14,7 @@ use super::expand::Frame;
 use super::guard::Guard;
 use super::lexer::{Lexer, LexerContext};
 use super::macros::Macros;
-use super::prepared::state::Prepared;
+use super::prepared::state::PreparedState;
 use super::search::FileReader;
 use super::token::{Flags, Token, TokenKind};
 use super::{Files, Headers, HeadersRead, Options, limits};
@@ -62,7 +62,7 @@ pub(super) struct Preprocessor<'a> {
     pub(super) sink: &'a mut Sink,
     pub(super) reader: FileReader<'a>,
     pub(super) macros: Macros,
-    pub(super) prepared: Prepared,
+    pub(super) prepared: PreparedState,
     /// Expansions being read, the innermost last.
     pub(super) frames: Vec<Frame>,
     /// Files being read, the innermost last.
@@ -71,12 +71,12 @@ pub(super) struct Preprocessor<'a> {
     pub(super) main_directory: PathBuf,
     /// The next value of `__COUNTER__`.
     pub(super) counter: u32,
-    pub(super) work: Work,
+    pub(super) work: WorkCounters,
 }
 
 /// The work done so far, and the state of the limits.
 #[derive(Debug, Default)]
-pub(super) struct Work {
+pub(super) struct WorkCounters {
     /// The number of tokens made by macros.
     pub(super) expanded: usize,
     /// Macro calls within arguments being expanded.
@@ -103,12 +103,12 @@ impl<'a> Preprocessor<'a> {
             sink,
             reader: FileReader::new(files),
             macros: Macros::default(),
-            prepared: Prepared::new(headers),
+            prepared: PreparedState::new(headers),
             frames: Vec::new(),
             open: Vec::new(),
             main_directory: PathBuf::new(),
             counter: 0,
-            work: Work::default(),
+            work: WorkCounters::default(),
         }
     }
 

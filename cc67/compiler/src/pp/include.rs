@@ -15,7 +15,7 @@ use crate::words::suggest;
 
 use super::engine::Preprocessor;
 use super::lexer::header::HeaderName;
-use super::search::Found;
+use super::search::SearchResult;
 use super::token::TokenKind;
 use super::{LAX, limits, standard};
 
@@ -100,7 +100,7 @@ impl Preprocessor<'_> {
         }
         let directories = self.directories(header.is_angled);
         match self.find(&directories, &name) {
-            Some(Found::File { path, text, is_respelled }) => {
+            Some(SearchResult::File { path, text, is_respelled }) => {
                 if is_respelled {
                     let message = format!("`{}` is `{}` on disk", header.name, path.display());
                     self.sink.report(
@@ -110,7 +110,7 @@ impl Preprocessor<'_> {
                 }
                 self.open_found(path, text, header.span);
             }
-            Some(Found::Ambiguous(paths)) => {
+            Some(SearchResult::Ambiguous(paths)) => {
                 let message = format!("`{}` matches several files", header.name);
                 let diagnostic =
                     Diagnostic::error(header.span, message).help("write the name in the same case");
@@ -118,7 +118,7 @@ impl Preprocessor<'_> {
                     paths.iter().fold(diagnostic, |it, path| it.note(format!("`{}`", path.display()))),
                 );
             }
-            Some(Found::Unreadable(path, error)) => {
+            Some(SearchResult::Unreadable(path, error)) => {
                 let message = format!("cannot read `{}`: {}", path.display(), reason(&error));
                 self.sink.report_lost_names(Diagnostic::error(header.span, message));
             }
@@ -140,7 +140,7 @@ impl Preprocessor<'_> {
         directories
     }
 
-    fn find(&mut self, directories: &[PathBuf], name: &str) -> Option<Found> {
+    fn find(&mut self, directories: &[PathBuf], name: &str) -> Option<SearchResult> {
         if name.starts_with('/')
             && let Some(found) = self.reader.find_in(Path::new("/"), name)
         {

@@ -47,7 +47,7 @@ pub(super) struct Lexer {
     /// Splices before this offset have been reported.
     checked_splices: usize,
     /// Bytes that need only one complaint a file had theirs.
-    complained: foreign::Complained,
+    complained: foreign::ReportedComplaints,
 }
 
 impl Lexer {
@@ -69,7 +69,7 @@ impl Lexer {
             is_line_start: true,
             in_directive: false,
             checked_splices: 0,
-            complained: foreign::Complained::default(),
+            complained: foreign::ReportedComplaints::default(),
         }
     }
 

@@ -53,7 +53,7 @@ pub(super) enum Builtin {
 
 /// The meaning of a name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Standing {
+pub(super) enum MacroState {
     /// Not looked up yet: it may be the name of a predefined macro.
     #[default]
     Unknown,
@@ -69,32 +69,32 @@ pub(super) enum Standing {
 #[derive(Debug, Default)]
 pub(super) struct Macros {
     macros: PrimaryMap<MacroId, Macro>,
-    current: SecondaryMap<Name, Standing>,
+    current: SecondaryMap<Name, MacroState>,
     /// The definitions saved by `#pragma push_macro`, the last one at the end.
-    saved: Vec<(Name, Standing)>,
+    saved: Vec<(Name, MacroState)>,
     bodies: Vec<Token>,
 }
 
 impl Macros {
     /// The meaning of a name.
-    pub(super) fn standing(&self, name: Name) -> Standing {
+    pub(super) fn standing(&self, name: Name) -> MacroState {
         self.current.get(name).copied().unwrap_or_default()
     }
 
     /// The definition in force for a name.
     pub(super) fn defined(&self, name: Name) -> Option<MacroId> {
-        if let Standing::Defined(id) = self.standing(name) { Some(id) } else { None }
+        if let MacroState::Defined(id) = self.standing(name) { Some(id) } else { None }
     }
 
     /// Notes that no text defines a name.
     pub(super) fn set_free(&mut self, name: Name) {
-        *self.slot(name) = Standing::Free;
+        *self.slot(name) = MacroState::Free;
     }
 
     /// Drops the knowledge of undefined names, because there are more texts now.
     pub(super) fn forget_free(&mut self) {
-        for standing in self.current.values_mut().filter(|standing| **standing == Standing::Free) {
-            *standing = Standing::Unknown;
+        for standing in self.current.values_mut().filter(|standing| **standing == MacroState::Free) {
+            *standing = MacroState::Unknown;
         }
     }
 
@@ -120,12 +120,12 @@ impl Macros {
     /// Puts a definition in force.
     pub(super) fn define(&mut self, name: Name, definition: Macro) {
         let id = self.macros.push(definition);
-        *self.slot(name) = Standing::Defined(id);
+        *self.slot(name) = MacroState::Defined(id);
     }
 
     /// Ends the force of any definition.
     pub(super) fn undefine(&mut self, name: Name) {
-        *self.slot(name) = Standing::Undefined;
+        *self.slot(name) = MacroState::Undefined;
     }
 
     /// Saves the definition of a name, or the fact that there is none.
@@ -158,7 +158,7 @@ impl Macros {
     }
 
     #[expect(clippy::indexing_slicing, reason = "the map grows to hold every key")]
-    fn slot(&mut self, name: Name) -> &mut Standing {
+    fn slot(&mut self, name: Name) -> &mut MacroState {
         &mut self.current[name]
     }
 }

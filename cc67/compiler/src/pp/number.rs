@@ -23,7 +23,7 @@ pub enum Number {
 
 /// The reason why a text is not a number.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
+pub struct NumberError {
     /// The finding.
     pub message: String,
     /// The bytes of the text that it refers to.
@@ -32,7 +32,7 @@ pub struct Problem {
     pub help: Option<String>,
 }
 
-impl Problem {
+impl NumberError {
     fn new(range: Range<usize>, message: impl Into<String>) -> Self {
         Self { message: message.into(), range, help: None }
     }
@@ -47,7 +47,7 @@ impl Problem {
 ///
 /// # Errors
 /// If the text does not follow the grammar of C, or is an integer of more than 64 bits.
-pub fn parse(text: &[u8]) -> Result<Number, Problem> {
+pub fn parse(text: &[u8]) -> Result<Number, NumberError> {
     match text {
         [b'0', b'x' | b'X', ..] => hexadecimal(text),
         [b'0', b'b' | b'B', ..] => integer(text, 2, 2),
@@ -65,17 +65,17 @@ pub fn parse(text: &[u8]) -> Result<Number, Problem> {
 }
 
 /// An octal number; `08` is likely meant to be decimal.
-fn octal(text: &[u8], digits: usize) -> Result<Number, Problem> {
+fn octal(text: &[u8], digits: usize) -> Result<Number, NumberError> {
     let wrong = text.iter().take(digits).position(|digit| matches!(digit, b'8' | b'9'));
     let Some(at) = wrong else { return integer(text, 1, 8) };
     let decimal = String::from_utf8_lossy(text.get(..digits).unwrap_or(text)).into_owned();
     let digit = char::from(*text.get(at).unwrap_or(&b'8'));
     let help = format!("a leading 0 makes a number octal; write `{}`", decimal.trim_start_matches('0'));
-    Err(Problem::new(at..at + 1, format!("invalid digit `{digit}` in octal constant")).help(help))
+    Err(NumberError::new(at..at + 1, format!("invalid digit `{digit}` in octal constant")).help(help))
 }
 
 /// An integer whose digits begin at `start`.
-fn integer(text: &[u8], start: usize, base: u32) -> Result<Number, Problem> {
+fn integer(text: &[u8], start: usize, base: u32) -> Result<Number, NumberError> {
     let mut value: u64 = 0;
     let mut at = start;
     let mut overflows = false;
@@ -86,10 +86,10 @@ fn integer(text: &[u8], start: usize, base: u32) -> Result<Number, Problem> {
         at += 1;
     }
     if at == start && base != 8 {
-        return Err(Problem::new(0..text.len(), "digits missing in integer constant"));
+        return Err(NumberError::new(0..text.len(), "digits missing in integer constant"));
     }
     if overflows {
-        return Err(Problem::new(0..at, "integer constant does not fit 64 bits"));
+        return Err(NumberError::new(0..at, "integer constant does not fit 64 bits"));
     }
     let suffix = text.get(at..).unwrap_or(&[]);
     let (is_unsigned, is_long_long, has_float_suffix) = match suffix.to_ascii_lowercase().as_slice() {
@@ -105,7 +105,7 @@ fn integer(text: &[u8], start: usize, base: u32) -> Result<Number, Problem> {
 }
 
 /// A decimal number with a point or an exponent.
-fn decimal_floating(text: &[u8]) -> Result<Number, Problem> {
+fn decimal_floating(text: &[u8]) -> Result<Number, NumberError> {
     let mut at = count(text, 0, u8::is_ascii_digit);
     if text.get(at) == Some(&b'.') {
         at = count(text, at + 1, u8::is_ascii_digit);
@@ -119,12 +119,12 @@ fn decimal_floating(text: &[u8]) -> Result<Number, Problem> {
     let value = if is_single { digits.parse::<f32>().map(f64::from) } else { digits.parse::<f64>() };
     match value {
         Ok(value) => Ok(Number::Floating(FloatingLiteral { value, is_single })),
-        Err(_) => Err(Problem::new(0..text.len(), "digits missing in floating constant")),
+        Err(_) => Err(NumberError::new(0..text.len(), "digits missing in floating constant")),
     }
 }
 
 /// `0x1F`, `0x1.8p3`
-fn hexadecimal(text: &[u8]) -> Result<Number, Problem> {
+fn hexadecimal(text: &[u8]) -> Result<Number, NumberError> {
     let digits = count(text, 2, u8::is_ascii_hexdigit);
     if !matches!(text.get(digits), Some(b'.' | b'p' | b'P')) {
         return integer(text, 2, 16);
@@ -134,7 +134,7 @@ fn hexadecimal(text: &[u8]) -> Result<Number, Problem> {
         at = count(text, at + 1, u8::is_ascii_hexdigit);
     }
     if !matches!(text.get(at), Some(b'p' | b'P')) {
-        let problem = Problem::new(0..at, "hexadecimal floating constant without an exponent");
+        let problem = NumberError::new(0..at, "hexadecimal floating constant without an exponent");
         return Err(problem.help("add one: `p0` multiplies by 1"));
     }
     let mut mantissa = Mantissa::default();
@@ -146,7 +146,7 @@ fn hexadecimal(text: &[u8]) -> Result<Number, Problem> {
         }
     }
     if at - 2 == usize::from(is_fraction) {
-        return Err(Problem::new(0..at, "digits missing in floating constant"));
+        return Err(NumberError::new(0..at, "digits missing in floating constant"));
     }
     let (exponent, at) = exponent(text, at)?;
     let is_single = floating_suffix(text, at)?;
@@ -210,12 +210,12 @@ fn scaled(integer: u64, exponent: i64) -> f64 {
 }
 
 /// Reads `e+10`: the value and the offset after it.
-fn exponent(text: &[u8], letter: usize) -> Result<(i64, usize), Problem> {
+fn exponent(text: &[u8], letter: usize) -> Result<(i64, usize), NumberError> {
     let sign = text.get(letter + 1);
     let start = letter + 1 + usize::from(matches!(sign, Some(b'+' | b'-')));
     let end = count(text, start, u8::is_ascii_digit);
     if end == start {
-        return Err(Problem::new(letter..start, "digits missing in the exponent"));
+        return Err(NumberError::new(letter..start, "digits missing in the exponent"));
     }
     let digits = text.get(start..end).and_then(|digits| std::str::from_utf8(digits).ok()).unwrap_or_default();
     let value = digits.parse::<i32>().map_or(i64::from(i32::MAX), i64::from);
@@ -223,7 +223,7 @@ fn exponent(text: &[u8], letter: usize) -> Result<(i64, usize), Problem> {
 }
 
 /// Reports whether the suffix makes a floating constant a `float`.
-fn floating_suffix(text: &[u8], at: usize) -> Result<bool, Problem> {
+fn floating_suffix(text: &[u8], at: usize) -> Result<bool, NumberError> {
     match text.get(at..) {
         Some([b'f' | b'F']) => Ok(true),
         Some([] | [b'l' | b'L']) => Ok(false),
@@ -231,9 +231,9 @@ fn floating_suffix(text: &[u8], at: usize) -> Result<bool, Problem> {
     }
 }
 
-fn bad_suffix(text: &[u8], at: usize, kind: &str) -> Problem {
+fn bad_suffix(text: &[u8], at: usize, kind: &str) -> NumberError {
     let suffix = String::from_utf8_lossy(text.get(at..).unwrap_or(&[])).into_owned();
-    let problem = Problem::new(at..text.len(), format!("invalid suffix `{suffix}` on {kind} constant"));
+    let problem = NumberError::new(at..text.len(), format!("invalid suffix `{suffix}` on {kind} constant"));
     if suffix.starts_with(['+', '-']) {
         problem.help("put a space before the sign; the letter before it makes it an exponent")
     } else if suffix.contains('.') {

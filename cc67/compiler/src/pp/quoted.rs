@@ -7,7 +7,7 @@ use crate::ast::Encoding;
 
 /// A problem within the quotes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
+pub struct QuotedProblem {
     /// The severity.
     pub kind: ProblemKind,
     /// The finding.
@@ -29,7 +29,7 @@ pub enum ProblemKind {
 
 /// The elements of a quoted string in an encoding, and its errors.
 #[must_use]
-pub fn string(text: &[u8], encoding: Encoding) -> (Vec<i32>, Vec<Problem>) {
+pub fn string(text: &[u8], encoding: Encoding) -> (Vec<i32>, Vec<QuotedProblem>) {
     let mut problems = Vec::new();
     let elements = decode(text, encoding, &mut problems);
     (elements, problems)
@@ -37,7 +37,7 @@ pub fn string(text: &[u8], encoding: Encoding) -> (Vec<i32>, Vec<Problem>) {
 
 /// The value of a quoted character constant, and its errors.
 #[must_use]
-pub fn character(text: &[u8]) -> (i32, Vec<Problem>) {
+pub fn character(text: &[u8]) -> (i32, Vec<QuotedProblem>) {
     let mut problems = Vec::new();
     let encoding = encoding(text);
     let elements = decode(text, encoding, &mut problems);
@@ -52,7 +52,7 @@ pub fn character(text: &[u8]) -> (i32, Vec<Problem>) {
         _ => "character constant has more than one character",
     };
     let help = (elements.len() > 1).then(|| "a string has double quotes: `\"`".to_owned());
-    problems.push(Problem {
+    problems.push(QuotedProblem {
         kind: ProblemKind::Error,
         message: message.to_owned(),
         range: 0..text.len(),
@@ -68,7 +68,7 @@ pub fn encoding(text: &[u8]) -> Encoding {
     all.into_iter().find(|encoding| text.starts_with(encoding.prefix().as_bytes())).unwrap_or_default()
 }
 
-fn decode(text: &[u8], encoding: Encoding, problems: &mut Vec<Problem>) -> Vec<i32> {
+fn decode(text: &[u8], encoding: Encoding, problems: &mut Vec<QuotedProblem>) -> Vec<i32> {
     let end = text.len().saturating_sub(1);
     let mut at = 1 + self::encoding(text).prefix().len();
     let mut elements = Vec::with_capacity(end.saturating_sub(at));
@@ -146,7 +146,7 @@ fn encode(character: char, encoding: Encoding, elements: &mut Vec<i32>) {
 }
 
 /// The value of the escape at `at`, and its length in bytes.
-fn escape(text: &[u8], at: usize, encoding: Encoding, problems: &mut Vec<Problem>) -> (i32, usize) {
+fn escape(text: &[u8], at: usize, encoding: Encoding, problems: &mut Vec<QuotedProblem>) -> (i32, usize) {
     let letter = text.get(at + 1).copied().unwrap_or(0);
     let value = match letter {
         b'a' => 7,
@@ -162,7 +162,7 @@ fn escape(text: &[u8], at: usize, encoding: Encoding, problems: &mut Vec<Problem
         b'x' => return numeric(text, at, at + 2, 16, usize::MAX, encoding, problems),
         _ => {
             let shown = if letter.is_ascii_graphic() { char::from(letter) } else { '?' };
-            problems.push(Problem {
+            problems.push(QuotedProblem {
                 kind: ProblemKind::Warning,
                 message: format!("unknown escape `\\{shown}`"),
                 range: at..at + 2,
@@ -182,10 +182,10 @@ fn numeric(
     base: u32,
     most: usize,
     encoding: Encoding,
-    problems: &mut Vec<Problem>,
+    problems: &mut Vec<QuotedProblem>,
 ) -> (i32, usize) {
     let mut problem = |kind, range, message: &str| {
-        problems.push(Problem { kind, message: message.to_owned(), range, help: None });
+        problems.push(QuotedProblem { kind, message: message.to_owned(), range, help: None });
     };
     let digits = text.iter().skip(start).take(most).map_while(|byte| char::from(*byte).to_digit(base));
     let (mut value, mut length, mut overflows) = (0_u32, 0, false);
@@ -239,7 +239,7 @@ mod tests {
         assert_eq!(character("u'é'".as_bytes()), (0xE9, vec![]));
     }
 
-    fn read(text: &[u8]) -> (Vec<i32>, Vec<Problem>) {
+    fn read(text: &[u8]) -> (Vec<i32>, Vec<QuotedProblem>) {
         string(text, encoding(text))
     }
 

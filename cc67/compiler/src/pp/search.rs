@@ -10,7 +10,7 @@ use crate::names::Name;
 use super::Files;
 
 /// The result of searching a name.
-pub(super) enum Found {
+pub(super) enum SearchResult {
     /// A file, possibly with another spelling than requested.
     File { path: PathBuf, text: Arc<Vec<u8>>, is_respelled: bool },
     /// Names that differ from the requested one, and from each other, only in letter case.
@@ -63,22 +63,22 @@ impl<'a> FileReader<'a> {
     }
 
     /// Looks for `name`, with slashes, below a directory.
-    pub(super) fn find_in(&mut self, directory: &Path, name: &str) -> Option<Found> {
+    pub(super) fn find_in(&mut self, directory: &Path, name: &str) -> Option<SearchResult> {
         let path = directory.join(name);
         match self.read(&path) {
-            Ok(text) => return Some(Found::File { path, text, is_respelled: false }),
+            Ok(text) => return Some(SearchResult::File { path, text, is_respelled: false }),
             Err(error) if is_absence(&error) => {}
-            Err(error) => return Some(Found::Unreadable(path, error)),
+            Err(error) => return Some(SearchResult::Unreadable(path, error)),
         }
         let mut paths = self.spellings(directory, name);
         if paths.len() > 1 {
-            return Some(Found::Ambiguous(paths));
+            return Some(SearchResult::Ambiguous(paths));
         }
         let path = paths.pop()?;
         match self.read(&path) {
-            Ok(text) => Some(Found::File { path, text, is_respelled: true }),
+            Ok(text) => Some(SearchResult::File { path, text, is_respelled: true }),
             Err(error) if is_absence(&error) => None,
-            Err(error) => Some(Found::Unreadable(path, error)),
+            Err(error) => Some(SearchResult::Unreadable(path, error)),
         }
     }
 

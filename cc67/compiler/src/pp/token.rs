@@ -125,30 +125,30 @@ macro_rules! token_kinds {
             }
 
             /// Every punctuator with its text.
-            const PUNCTUATORS: &[Spelled] = &[$(($text.as_bytes(), Self::$punctuator),)*];
+            const PUNCTUATORS: &[Punctuator] = &[$(($text.as_bytes(), Self::$punctuator),)*];
         }
     };
 }
 
 /// A punctuator and its text.
-type Spelled = (&'static [u8], TokenKind);
+type Punctuator = (&'static [u8], TokenKind);
 
 /// The punctuators, grouped by first byte, the longest first.
-static BY_FIRST_BYTE: [Spelled; TokenKind::PUNCTUATORS.len()] = by_first_byte();
+static BY_FIRST_BYTE: [Punctuator; TokenKind::PUNCTUATORS.len()] = by_first_byte();
 
 /// For each byte, which of them begin with it.
 static OF_FIRST_BYTE: [(u8, u8); 256] = of_first_byte();
 
 impl TokenKind {
     /// The punctuators that begin with a byte, the longest first.
-    pub(super) fn punctuators_from(first: u8) -> &'static [Spelled] {
+    pub(super) fn punctuators_from(first: u8) -> &'static [Punctuator] {
         let (start, end) = OF_FIRST_BYTE.get(usize::from(first)).copied().unwrap_or_default();
         BY_FIRST_BYTE.get(usize::from(start)..usize::from(end)).unwrap_or(&[])
     }
 }
 
 #[expect(clippy::indexing_slicing, reason = "runs when the compiler is built")]
-const fn by_first_byte() -> [Spelled; TokenKind::PUNCTUATORS.len()] {
+const fn by_first_byte() -> [Punctuator; TokenKind::PUNCTUATORS.len()] {
     let mut sorted = [(b"".as_slice(), TokenKind::End); TokenKind::PUNCTUATORS.len()];
     let mut number = 0;
     while number < sorted.len() {

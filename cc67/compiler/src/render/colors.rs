@@ -9,7 +9,7 @@ use codespan_reporting::term::WriteStyle;
 
 /// Text with its colours.
 #[derive(Debug, Default)]
-pub(super) struct Colored(Vec<u8>);
+pub(super) struct ColoredText(Vec<u8>);
 
 /// A colour of the sixteen that every terminal has, by its number among the first eight.
 #[derive(Clone, Copy)]
@@ -23,7 +23,7 @@ enum Hue {
 /// The colour of marks around the primary range: line numbers, borders, further ranges.
 const ASIDE: Hue = Hue::Cyan;
 
-impl Colored {
+impl ColoredText {
     pub(super) fn into_bytes(self) -> Vec<u8> {
         self.0
     }
@@ -37,7 +37,7 @@ impl Colored {
     }
 }
 
-impl Write for Colored {
+impl Write for ColoredText {
     fn write(&mut self, bytes: &[u8]) -> Result<usize> {
         self.0.write(bytes)
     }
@@ -47,7 +47,7 @@ impl Write for Colored {
     }
 }
 
-impl WriteStyle for Colored {
+impl WriteStyle for ColoredText {
     fn set_header(&mut self, severity: Severity) -> Result<()> {
         self.set_bright(hue(severity))
     }

@@ -14,7 +14,7 @@ use codespan_reporting::term::{self, Config};
 use crate::diag::{Diagnostic, Severity};
 use crate::source::{FileId, SourceMap};
 
-use super::colors::Colored;
+use super::colors::ColoredText;
 use super::marks::{Mark, marks, notes};
 
 /// The colouring of the text.
@@ -66,7 +66,7 @@ impl<'a> Renderer<'a> {
         match self.color {
             Color::Never => term::emit_into_string(&self.config, self, report).ok(),
             Color::Always => {
-                let mut colored = Colored::default();
+                let mut colored = ColoredText::default();
                 term::emit_to_write_style(&mut colored, &self.config, self, report).ok()?;
                 String::from_utf8(colored.into_bytes()).ok()
             }

@@ -4,7 +4,7 @@ use super::Sema;
 use super::constants::Constant;
 use super::conversions::AssignmentTarget;
 use super::operands::Operand;
-use super::places::Located;
+use super::places::TypedPlace;
 use crate::ast::{Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
 use crate::lints::{reversed_operator, value_range};
@@ -64,7 +64,7 @@ impl Sema<'_> {
     }
 
     /// The place that an assignment changes.
-    fn modifiable(&mut self, operand: Operand, span: Span) -> Option<Located> {
+    fn modifiable(&mut self, operand: Operand, span: Span) -> Option<TypedPlace> {
         let Operand::Place(located) = operand else {
             let what = match operand {
                 Operand::Function(..) => "a function",
@@ -106,7 +106,7 @@ impl Sema<'_> {
 
     fn assign_record(
         &mut self,
-        target: Located,
+        target: TypedPlace,
         source: Operand,
         source_span: Span,
         span: Span,
@@ -164,7 +164,7 @@ impl Sema<'_> {
     fn update(
         &mut self,
         operator: BinaryOperator,
-        target: Located,
+        target: TypedPlace,
         value: ExprId,
         result: UpdateResult,
         span: Span,

@@ -13,7 +13,8 @@ use crate::operators::{BinaryOp, CompareOp};
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
 use crate::typed::{
-    Expr, ExprId, ExprKind, Hidden, Label, LabelId, Local, LocalId, Place, PlaceId, PlaceKind, UnaryOp,
+    Expr, ExprId, ExprKind, HiddenParameters, Label, LabelId, Local, LocalId, Place, PlaceId, PlaceKind,
+    UnaryOp,
 };
 
 /// The parts of a function that are being built, and the state needed by its statements.
@@ -26,14 +27,14 @@ pub(super) struct Body {
     /// It is declared `void`, even if it returns a value.
     pub(super) is_void: bool,
     /// Parameters that the source does not write.
-    pub(super) hidden: Hidden,
+    pub(super) hidden: HiddenParameters,
     /// Parameters, variables and temporaries.
     pub(super) locals: PrimaryMap<LocalId, Local>,
     /// Expressions.
     pub(super) exprs: PrimaryMap<ExprId, Expr>,
     /// Places.
     pub(super) places: PrimaryMap<PlaceId, Place>,
-    pub(super) jumps: Jumps,
+    pub(super) jumps: JumpTargets,
     /// Integer constants that were truncated by a division, with the first such division.
     pub(super) cut: BTreeMap<ExprId, (i64, i64)>,
     /// Integer constants that are computed as the word of an analog output is.
@@ -46,7 +47,7 @@ pub(super) struct Body {
 
 /// The jump targets of a function's statements.
 #[derive(Debug, Default)]
-pub(super) struct Jumps {
+pub(super) struct JumpTargets {
     /// Labels.
     pub(super) labels: PrimaryMap<LabelId, Label>,
     /// The labels by name.
@@ -76,11 +77,11 @@ impl Body {
             name,
             result,
             is_void: result.is_void(),
-            hidden: Hidden::default(),
+            hidden: HiddenParameters::default(),
             locals: PrimaryMap::new(),
             exprs: PrimaryMap::new(),
             places: PrimaryMap::new(),
-            jumps: Jumps::default(),
+            jumps: JumpTargets::default(),
             cut: BTreeMap::new(),
             dac_words: BTreeMap::new(),
             undeclared: BTreeSet::new(),

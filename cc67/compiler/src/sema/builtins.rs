@@ -2,7 +2,7 @@
 
 use super::Sema;
 use super::operands::Operand;
-use super::places::Located;
+use super::places::TypedPlace;
 use crate::ast::{Designator, Expression, Statement, StatementKind, TypeName};
 use crate::diag::Diagnostic;
 use crate::source::Span;
@@ -50,7 +50,7 @@ impl Sema<'_> {
         let pointer = self.types.pointer_to(ty);
         let address = self.body.expr(ExprKind::VaArg(list), pointer, span);
         let place = self.body.place(PlaceKind::Pointer(address, 0), ty, span);
-        Operand::Place(Located { place, ty: QualifiedType::plain(ty), is_lvalue: false })
+        Operand::Place(TypedPlace { place, ty: QualifiedType::plain(ty), is_lvalue: false })
     }
 
     /// `va_end(list)`: nothing to do.
@@ -178,7 +178,7 @@ impl Sema<'_> {
     fn record_behind(
         &mut self,
         statements: Vec<crate::typed::Stmt>,
-        located: Located,
+        located: TypedPlace,
         span: Span,
     ) -> Operand {
         let ty: TypeId = located.ty.ty;
@@ -186,6 +186,6 @@ impl Sema<'_> {
         let address = self.address(located.place, pointer_type, span);
         let pointer = self.body.expr(ExprKind::Statements(statements, Some(address)), pointer_type, span);
         let place = self.body.place(PlaceKind::Pointer(pointer, 0), ty, span);
-        Operand::Place(Located { place, ty: QualifiedType::plain(ty), is_lvalue: false })
+        Operand::Place(TypedPlace { place, ty: QualifiedType::plain(ty), is_lvalue: false })
     }
 }

@@ -80,7 +80,7 @@ impl Sema<'_> {
         }
         self.body.returns_twice |= self.unevaluated == 0 && self.is_setjmp(symbol);
         let given = values.len();
-        let definition = self.symbols.facts(symbol).definer.as_ref().map(|definer| &definer.call);
+        let definition = self.symbols.facts(symbol).convention.as_ref().map(|definer| &definer.call);
         match definition {
             None => self.call_declared(symbol, visible, values, span),
             Some(definition) if fits(definition, given) => {
@@ -99,7 +99,7 @@ impl Sema<'_> {
         let entry = self.symbols.get(symbol);
         entry.linkage == Linkage::External
             && JumpFunction::named(&entry.name) == Some(JumpFunction::Set)
-            && self.symbols.facts(symbol).definer.is_none()
+            && self.symbols.facts(symbol).convention.is_none()
     }
 
     /// A call of a function that this unit does not define.

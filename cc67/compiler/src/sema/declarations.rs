@@ -13,7 +13,7 @@ use crate::typed::{Definition, Linkage, SymbolId};
 
 /// A declared name with its type, before it is bound.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Declared<'t> {
+pub(super) struct DeclaredName<'t> {
     /// The name.
     pub(super) name: Name,
     /// Its range in the source.
@@ -61,7 +61,7 @@ impl Sema<'_> {
         base: Option<QualifiedType>,
         specifiers: &Specifiers,
         init: &'t InitDeclarator,
-    ) -> Option<Declared<'t>> {
+    ) -> Option<DeclaredName<'t>> {
         let (name, span) = init.declarator.name?;
         let ty = base.and_then(|base| self.derived_type(base, &init.declarator.derived, span));
         let Some(ty) = ty else {
@@ -69,12 +69,12 @@ impl Sema<'_> {
             return None;
         };
         let align = self.alignment(&specifiers.alignments).max(self.alignment(&init.declarator.alignments));
-        Some(Declared { name, span, ty, align, initializer: init.initializer.as_ref() })
+        Some(DeclaredName { name, span, ty, align, initializer: init.initializer.as_ref() })
     }
 
     /// A typedef; the same again is accepted.
-    pub(super) fn declare_typedef(&mut self, declared: Declared<'_>, declaration: &Declaration) {
-        let Declared { name, span, ty, initializer, .. } = declared;
+    pub(super) fn declare_typedef(&mut self, declared: DeclaredName<'_>, declaration: &Declaration) {
+        let DeclaredName { name, span, ty, initializer, .. } = declared;
         if let Some(Initializer::Expression(_) | Initializer::List { .. }) = initializer {
             self.report(Diagnostic::error(span, "a typedef cannot have an initialiser"));
         }
@@ -107,8 +107,8 @@ impl Sema<'_> {
     }
 
     /// A function prototype, at file scope or in a block.
-    pub(super) fn declare_function(&mut self, declared: Declared<'_>, storage: Option<Storage>) {
-        let Declared { name, span, ty, initializer, .. } = declared;
+    pub(super) fn declare_function(&mut self, declared: DeclaredName<'_>, storage: Option<Storage>) {
+        let DeclaredName { name, span, ty, initializer, .. } = declared;
         if initializer.is_some() {
             self.report(Diagnostic::error(span, "a function cannot have an initialiser"));
         }
@@ -142,12 +142,12 @@ impl Sema<'_> {
             return None;
         }
         let declared =
-            self.symbols.facts(symbol).definer.as_ref().map_or(known_type, |definer| definer.declared);
+            self.symbols.facts(symbol).convention.as_ref().map_or(known_type, |definer| definer.declared);
         if !self.types.compatible(declared, ty) {
             self.lint_prototype(name, declared, first, ty, span);
         }
         let composite = self.types.composite(known_type, ty);
-        let is_defined = self.symbols.facts(symbol).definer.is_some();
+        let is_defined = self.symbols.facts(symbol).convention.is_some();
         let entry = self.symbols.get_mut(symbol);
         if storage == Some(Storage::Static) {
             entry.linkage = Linkage::Internal;
@@ -180,8 +180,8 @@ impl Sema<'_> {
     }
 
     /// A variable with linkage: at file scope, or `extern` in a block.
-    pub(super) fn declare_object(&mut self, declared: Declared<'_>, storage: Option<Storage>) {
-        let Declared { name, span, ty, align, initializer } = declared;
+    pub(super) fn declare_object(&mut self, declared: DeclaredName<'_>, storage: Option<Storage>) {
+        let DeclaredName { name, span, ty, align, initializer } = declared;
         let Some(symbol) = self.object_symbol(name, ty.ty, storage, span) else {
             self.scopes.bind(name, Entity::Poisoned, span);
             return;

@@ -1,7 +1,7 @@
 //! Designators: `.member` and `[index]` in initialisers select the next part.
 
 use super::Sema;
-use super::initializers::{Level, Shape};
+use super::initializers::{AggregateLevel, Shape};
 use crate::ast::{Designator, Expression};
 use crate::diag::Diagnostic;
 use crate::names::Name;
@@ -9,7 +9,11 @@ use crate::source::Span;
 
 impl Sema<'_> {
     /// Follows designators from the outermost level; returns the number of elements of a range.
-    pub(super) fn designate(&mut self, stack: &mut Vec<Level>, designators: &[Designator]) -> Option<u32> {
+    pub(super) fn designate(
+        &mut self,
+        stack: &mut Vec<AggregateLevel>,
+        designators: &[Designator],
+    ) -> Option<u32> {
         let mut times = 1;
         for (index, designator) in designators.iter().enumerate() {
             if index > 0 {
@@ -40,7 +44,7 @@ impl Sema<'_> {
     }
 
     /// Opens a level for the current part of the innermost level.
-    fn open_current(&mut self, stack: &mut Vec<Level>, span: Span) -> Option<()> {
+    fn open_current(&mut self, stack: &mut Vec<AggregateLevel>, span: Span) -> Option<()> {
         let slot = self.next_slot(stack, span)?;
         let Some(level) = self.level(slot) else {
             let message = format!("`{}` has no parts", self.spell(slot.ty.ty));
@@ -54,7 +58,7 @@ impl Sema<'_> {
         Some(())
     }
 
-    fn designate_member(&mut self, stack: &mut Vec<Level>, name: Name, span: Span) -> Option<()> {
+    fn designate_member(&mut self, stack: &mut Vec<AggregateLevel>, name: Name, span: Span) -> Option<()> {
         loop {
             let level = *stack.last()?;
             let Shape::Record { record, .. } = level.shape else {
@@ -84,7 +88,7 @@ impl Sema<'_> {
         }
     }
 
-    fn designated_index(&mut self, stack: &[Level], index: &Expression) -> Option<u32> {
+    fn designated_index(&mut self, stack: &[AggregateLevel], index: &Expression) -> Option<u32> {
         let level = stack.last()?;
         let Shape::Array { length, .. } = level.shape else {
             let message = format!("`{}` is not an array", self.spell(level.slot.ty.ty));
@@ -102,7 +106,7 @@ impl Sema<'_> {
     }
 }
 
-fn set_next(stack: &mut [Level], next: u32) {
+fn set_next(stack: &mut [AggregateLevel], next: u32) {
     if let Some(level) = stack.last_mut() {
         level.next = next;
     }

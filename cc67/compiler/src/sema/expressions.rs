@@ -4,7 +4,7 @@ use super::Sema;
 use super::conversions::AssignmentTarget;
 use super::literals::character_type;
 use super::operands::Operand;
-use super::places::Located;
+use super::places::TypedPlace;
 use super::scope::Entity;
 use super::undeclared::is_sensible;
 use crate::ast::{Expression, ExpressionKind, TypeName, UnaryOperator};
@@ -202,7 +202,7 @@ impl Sema<'_> {
         }
     }
 
-    fn arrow_base(&mut self, operand: Operand, base: &Expression, member: Name) -> Option<Located> {
+    fn arrow_base(&mut self, operand: Operand, base: &Expression, member: Name) -> Option<TypedPlace> {
         if self.is_record(operand) {
             let (spelled, member) = (self.spell(self.operand_type(operand).ty), self.spelling(member));
             let message = format!("`->` needs a pointer, but this is a `{spelled}`");
@@ -221,7 +221,7 @@ impl Sema<'_> {
         Some(self.pointed(pointer, to, base.span))
     }
 
-    fn dot_base(&mut self, operand: Operand, base: &Expression, member: Name) -> Option<Located> {
+    fn dot_base(&mut self, operand: Operand, base: &Expression, member: Name) -> Option<TypedPlace> {
         if let Operand::Place(located) = operand
             && self.types.record_of(located.ty.ty).is_some()
         {

@@ -7,9 +7,9 @@
 use super::Sema;
 use super::body::Body;
 use super::declarators::{DeclaredParameter, parameter_types};
-use super::scope::{Closed, Entity};
+use super::scope::{ClosedScope, Entity};
 use super::specifiers::ImplicitInt;
-use super::symbols::Definer;
+use super::symbols::CallingConvention;
 use crate::ast::{Derived, FunctionDefinition, Parameters, Statement, StatementKind, Storage};
 use crate::diag::{Diagnostic, Lint};
 use crate::lints::unused_label;
@@ -20,14 +20,14 @@ use crate::typed::{Definition, Function, LocalId, Stmt, StmtKind, SymbolId};
 
 /// A definition whose body waits for the second pass.
 #[derive(Debug)]
-pub(super) struct Pending<'t> {
+pub(super) struct PendingDefinition<'t> {
     item: usize,
     definition: &'t FunctionDefinition,
     symbol: SymbolId,
     name: Name,
     span: Span,
     parameters: Vec<DeclaredParameter>,
-    closed: Closed,
+    closed: ClosedScope,
 }
 
 impl Sema<'_> {
@@ -36,7 +36,7 @@ impl Sema<'_> {
         &mut self,
         definition: &'t FunctionDefinition,
         item: usize,
-    ) -> Option<Pending<'t>> {
+    ) -> Option<PendingDefinition<'t>> {
         let (name, span) = definition.declarator.name?;
         let Some(signature) = self.signature(definition, span) else {
             self.scopes.bind(name, Entity::Poisoned, span);
@@ -51,13 +51,13 @@ impl Sema<'_> {
         let visible = self.types.intern(Type::Function(FunctionType { result: call.result, ..declared }));
         self.scopes.bind(name, Entity::Function(symbol, visible), span);
         let ty = self.types.intern(Type::Function(call.clone()));
-        self.symbols.facts_mut(symbol).definer =
-            Some(Definer { call, declared: declared_type, span, is_void_with_value });
+        self.symbols.facts_mut(symbol).convention =
+            Some(CallingConvention { call, declared: declared_type, span, is_void_with_value });
         let entry = self.symbols.get_mut(symbol);
         entry.ty = ty;
         entry.definition = Definition::Function;
         entry.span = span;
-        Some(Pending { item, definition, symbol, name, span, parameters, closed })
+        Some(PendingDefinition { item, definition, symbol, name, span, parameters, closed })
     }
 
     fn signature(&mut self, definition: &FunctionDefinition, span: Span) -> Option<Signature> {
@@ -159,7 +159,7 @@ impl Sema<'_> {
     }
 
     fn lint_defined_twice(&mut self, symbol: SymbolId, span: Span) {
-        let Some(first) = self.symbols.facts(symbol).definer.as_ref().map(|definer| definer.span) else {
+        let Some(first) = self.symbols.facts(symbol).convention.as_ref().map(|definer| definer.span) else {
             return;
         };
         let message = format!("function `{}` is defined twice", self.symbols.get(symbol).name);
@@ -171,9 +171,10 @@ impl Sema<'_> {
     }
 
     /// The second pass: the body. `None` for a definition that a later one replaces.
-    pub(super) fn define_function(&mut self, pending: Pending<'_>) -> Option<Function> {
-        let Pending { item, definition, symbol, name, span, parameters, closed } = pending;
-        let definer = self.symbols.facts(symbol).definer.as_ref().filter(|definer| definer.span == span)?;
+    pub(super) fn define_function(&mut self, pending: PendingDefinition<'_>) -> Option<Function> {
+        let PendingDefinition { item, definition, symbol, name, span, parameters, closed } = pending;
+        let definer =
+            self.symbols.facts(symbol).convention.as_ref().filter(|definer| definer.span == span)?;
         let (ty, is_void) =
             (definer.call.clone(), definer.is_void_with_value || definer.call.result.is_void());
         let errors = self.sink.errors();
@@ -301,7 +302,7 @@ struct Signature {
     /// The type as called.
     call: FunctionType,
     parameters: Vec<DeclaredParameter>,
-    closed: Closed,
+    closed: ClosedScope,
     is_void_with_value: bool,
 }
 

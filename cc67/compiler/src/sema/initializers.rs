@@ -8,7 +8,7 @@ use super::Sema;
 use super::conversions::AssignmentTarget;
 use super::literals::string_bytes;
 use super::operands::Operand;
-use super::places::Located;
+use super::places::TypedPlace;
 use crate::ast::{
     Expression, ExpressionKind, Initializer, InitializerItem, RecordKind, StringLiteral, TypeName,
 };
@@ -64,7 +64,7 @@ pub(super) enum Shape {
 
 /// An aggregate that is being filled.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Level {
+pub(super) struct AggregateLevel {
     pub(super) slot: Slot,
     pub(super) shape: Shape,
     /// Number of the next element or member.
@@ -81,7 +81,7 @@ struct InitializedRange {
     end: u32,
 }
 
-impl Level {
+impl AggregateLevel {
     pub(super) fn advance(&mut self) {
         self.next = match self.shape {
             // Only one member of a union is initialised.
@@ -173,11 +173,11 @@ impl Sema<'_> {
         let pointer =
             stores.into_iter().rev().fold(address, |pointer, store| self.body.comma(store, pointer, span));
         let place = self.body.place(PlaceKind::Pointer(pointer, 0), complete, span);
-        Operand::Place(Located { place, ty: qualified, is_lvalue: true })
+        Operand::Place(TypedPlace { place, ty: qualified, is_lvalue: true })
     }
 
     /// The stores that initialise a local.
-    fn stores(&mut self, whole: Located, leaves: &[Leaf], span: Span) -> Vec<ExprId> {
+    fn stores(&mut self, whole: TypedPlace, leaves: &[Leaf], span: Span) -> Vec<ExprId> {
         let mut stores = Vec::with_capacity(leaves.len() + 1);
         let size = self.types.size_of(whole.ty.ty).unwrap_or(0);
         if !self.covers(leaves, size) {
@@ -366,7 +366,7 @@ impl Sema<'_> {
     fn fill_item(
         &mut self,
         leaves: &mut Vec<Leaf>,
-        stack: &mut Vec<Level>,
+        stack: &mut Vec<AggregateLevel>,
         item: &InitializerItem,
         initialized: &mut InitializedRange,
     ) -> Option<()> {
@@ -455,7 +455,7 @@ impl Sema<'_> {
     fn fill_expression(
         &mut self,
         leaves: &mut Vec<Leaf>,
-        stack: &mut Vec<Level>,
+        stack: &mut Vec<AggregateLevel>,
         value: &Expression,
         initialized: &mut InitializedRange,
     ) -> Option<()> {
@@ -570,7 +570,7 @@ impl Sema<'_> {
     }
 
     /// The level of an aggregate; `None` for scalars.
-    pub(super) fn level(&self, slot: Slot) -> Option<Level> {
+    pub(super) fn level(&self, slot: Slot) -> Option<AggregateLevel> {
         let shape = match self.types.get(slot.ty.ty) {
             Type::Array(element, length) => {
                 Shape::Array { element: *element, length: *length, size: self.types.size_of(element.ty)? }
@@ -578,11 +578,11 @@ impl Sema<'_> {
             Type::Record(record) => Shape::Record { record: *record, kind: self.types.record(*record).kind },
             _ => return None,
         };
-        Some(Level { slot, shape, next: 0 })
+        Some(AggregateLevel { slot, shape, next: 0 })
     }
 
     /// The part at a level's number.
-    fn slot(&self, level: &Level) -> Option<Slot> {
+    fn slot(&self, level: &AggregateLevel) -> Option<Slot> {
         match level.shape {
             Shape::Array { element, length, size } => {
                 (length.is_none_or(|length| level.next < length)).then_some(())?;
@@ -597,7 +597,7 @@ impl Sema<'_> {
     }
 
     /// The part that the next value initialises; full levels are closed.
-    pub(super) fn next_slot(&mut self, stack: &mut Vec<Level>, span: Span) -> Option<Slot> {
+    pub(super) fn next_slot(&mut self, stack: &mut Vec<AggregateLevel>, span: Span) -> Option<Slot> {
         loop {
             let level = stack.last()?;
             if let Some(slot) = self.slot(level) {

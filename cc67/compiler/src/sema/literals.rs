@@ -3,7 +3,7 @@
 use super::Sema;
 use super::constants::Constant;
 use super::operands::Operand;
-use super::places::Located;
+use super::places::TypedPlace;
 use crate::ast::{Encoding, FloatingLiteral, IntegerLiteral, StringLiteral};
 use crate::pp::Standard;
 use crate::source::Span;
@@ -36,13 +36,13 @@ impl Sema<'_> {
         Operand::Place(self.string_place(ty, || bytes, span))
     }
 
-    fn string_place(&mut self, ty: TypeId, bytes: impl FnOnce() -> Vec<u8>, span: Span) -> Located {
+    fn string_place(&mut self, ty: TypeId, bytes: impl FnOnce() -> Vec<u8>, span: Span) -> TypedPlace {
         let qualified = QualifiedType::plain(ty);
         if self.unevaluated > 0 {
             // Only the type is needed: nothing is added to `.data`.
             let nowhere = self.body.int(0, Types::INT, span);
             let place = self.body.place(PlaceKind::Pointer(nowhere, 0), ty, span);
-            return Located { place, ty: qualified, is_lvalue: true };
+            return TypedPlace { place, ty: qualified, is_lvalue: true };
         }
         let symbol = self.symbols.anonymous(ty, StaticData { bytes: bytes(), addresses: Vec::new() }, span);
         self.symbol_place(symbol, qualified, span)

@@ -1,7 +1,7 @@
 //! Declarations in blocks.
 
 use super::Sema;
-use super::declarations::Declared;
+use super::declarations::DeclaredName;
 use super::scope::Entity;
 use super::specifiers::ImplicitInt;
 use crate::ast::{Declaration, Storage};
@@ -30,8 +30,8 @@ impl Sema<'_> {
     }
 
     /// A static variable of a function, which gets its own symbol.
-    fn declare_static(&mut self, declared: Declared<'_>) {
-        let Declared { name, span, ty, align, initializer } = declared;
+    fn declare_static(&mut self, declared: DeclaredName<'_>) {
+        let DeclaredName { name, span, ty, align, initializer } = declared;
         self.lint_declared_twice(name, span);
         let symbol = self.symbols.internal(self.names.get(name), ty.ty, span);
         self.symbols.get_mut(symbol).align = align;
@@ -54,8 +54,8 @@ impl Sema<'_> {
         self.scopes.rebind(name, entity);
     }
 
-    fn declare_local(&mut self, declared: Declared<'_>, out: &mut Vec<Stmt>) {
-        let Declared { name, span, ty, align, initializer } = declared;
+    fn declare_local(&mut self, declared: DeclaredName<'_>, out: &mut Vec<Stmt>) {
+        let DeclaredName { name, span, ty, align, initializer } = declared;
         self.lint_declared_twice(name, span);
         let is_open_array = initializer.is_some() && self.types.array(ty.ty).is_some();
         if !is_open_array && self.check_complete(name, ty.ty, span).is_none() {

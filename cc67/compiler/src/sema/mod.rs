@@ -56,7 +56,7 @@ use crate::typed::{Definition, Linkage, Unit};
 use crate::words::foreign::Origin;
 
 use body::Body;
-use functions::Pending;
+use functions::PendingDefinition;
 use scope::Scopes;
 use symbols::Symbols;
 
@@ -95,7 +95,7 @@ pub fn analyze_as(
         persist,
         standard,
         unevaluated: 0,
-        noted: Noted::default(),
+        noted: MessageFacts::default(),
     };
     let pending = sema.declare_items(unit);
     let functions: Vec<_> = pending.into_iter().filter_map(|pending| sema.define_function(pending)).collect();
@@ -120,12 +120,12 @@ struct Sema<'a> {
     standard: Standard,
     /// Depth of operands that are not evaluated, only analysed for their type.
     unevaluated: u32,
-    noted: Noted,
+    noted: MessageFacts,
 }
 
 /// Facts noted for later messages.
 #[derive(Debug, Default)]
-struct Noted {
+struct MessageFacts {
     /// Structures with a wrong definition, for whose members no messages are reported.
     broken: BTreeSet<RecordId>,
     /// The declarations of enumerations without negative constants, and of their typedefs.
@@ -138,7 +138,7 @@ struct Noted {
 
 impl Sema<'_> {
     /// The first pass.
-    fn declare_items<'t>(&mut self, unit: &'t ast::TranslationUnit) -> Vec<Pending<'t>> {
+    fn declare_items<'t>(&mut self, unit: &'t ast::TranslationUnit) -> Vec<PendingDefinition<'t>> {
         let mut pending = Vec::new();
         for (index, item) in unit.items.iter().enumerate() {
             self.scopes.at_item(index);

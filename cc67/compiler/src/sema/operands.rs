@@ -4,7 +4,7 @@
 //! on. `None` instead of an operand means that it was diagnosed: expressions computed from it are not reported again.
 
 use super::Sema;
-use super::places::Located;
+use super::places::TypedPlace;
 use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 use crate::ty::{QualifiedType, Type, TypeId, Types};
@@ -16,7 +16,7 @@ pub(super) enum Operand {
     /// A value of scalar type, or an effect of type `void`.
     Value(ExprId),
     /// Storage: an lvalue, or a structure result of an expression.
-    Place(Located),
+    Place(TypedPlace),
     /// A function and its type.
     Function(Callee, TypeId),
 }
@@ -50,7 +50,7 @@ impl Sema<'_> {
         }
     }
 
-    fn read_place(&mut self, located: Located, span: Span) -> Option<ExprId> {
+    fn read_place(&mut self, located: TypedPlace, span: Span) -> Option<ExprId> {
         match self.types.get(located.ty.ty) {
             Type::Array(element, _) => {
                 let element = *element;
@@ -100,7 +100,7 @@ impl Sema<'_> {
     fn lint_void_value(&mut self, value: ExprId, span: Span) {
         let ExprKind::Call(call) = &self.body.exprs[value].kind else { return };
         let Callee::Symbol(symbol) = call.callee else { return };
-        let definer = self.symbols.facts(symbol).definer.as_ref();
+        let definer = self.symbols.facts(symbol).convention.as_ref();
         let Some(definition) =
             definer.filter(|definer| definer.is_void_with_value).map(|definer| definer.span)
         else {
@@ -130,7 +130,7 @@ impl Sema<'_> {
     }
 
     /// The effect of evaluating a place: a read of a scalar, the pointer expression of anything larger.
-    fn place_effect(&mut self, located: Located, span: Span) -> ExprId {
+    fn place_effect(&mut self, located: TypedPlace, span: Span) -> ExprId {
         if self.types.is_scalar(located.ty.ty) {
             return self.body.expr(ExprKind::Load(located.place), located.ty.ty, span);
         }
@@ -147,7 +147,7 @@ impl Sema<'_> {
         let address = self.address(place, pointer_type, span);
         let pointer = self.body.comma(effect, address, span);
         let place = self.body.place(PlaceKind::Pointer(pointer, 0), ty, span);
-        Operand::Place(Located { place, ty: QualifiedType::plain(ty), is_lvalue: false })
+        Operand::Place(TypedPlace { place, ty: QualifiedType::plain(ty), is_lvalue: false })
     }
 
     /// Reports whether an operand is a whole structure or union.

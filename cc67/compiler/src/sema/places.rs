@@ -11,7 +11,7 @@ use crate::typed::{ExprId, ExprKind, LocalId, PlaceId, PlaceKind, SymbolId};
 
 /// A place with its C type.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Located {
+pub(super) struct TypedPlace {
     /// The place.
     pub(super) place: PlaceId,
     /// The type of the stored value, with qualifiers.
@@ -22,18 +22,18 @@ pub(super) struct Located {
 
 impl Sema<'_> {
     /// The place of a local.
-    pub(super) fn local_place(&mut self, local: LocalId, ty: QualifiedType, span: Span) -> Located {
+    pub(super) fn local_place(&mut self, local: LocalId, ty: QualifiedType, span: Span) -> TypedPlace {
         let place = self.body.place(PlaceKind::Local(local, 0), ty.ty, span);
-        Located { place, ty, is_lvalue: true }
+        TypedPlace { place, ty, is_lvalue: true }
     }
 
     /// The place of a symbol, which is used by this.
-    pub(super) fn symbol_place(&mut self, symbol: SymbolId, ty: QualifiedType, span: Span) -> Located {
+    pub(super) fn symbol_place(&mut self, symbol: SymbolId, ty: QualifiedType, span: Span) -> TypedPlace {
         if self.unevaluated == 0 {
             self.symbols.mark_used(symbol, span);
         }
         let place = self.body.place(PlaceKind::Symbol(symbol, 0), ty.ty, span);
-        Located { place, ty, is_lvalue: true }
+        TypedPlace { place, ty, is_lvalue: true }
     }
 
     /// The address of a symbol, as a value of pointer type `ty`.
@@ -69,7 +69,7 @@ impl Sema<'_> {
     }
 
     /// The place to which a pointer points.
-    pub(super) fn pointed(&mut self, pointer: ExprId, ty: QualifiedType, span: Span) -> Located {
+    pub(super) fn pointed(&mut self, pointer: ExprId, ty: QualifiedType, span: Span) -> TypedPlace {
         let size = self.types.size_of(ty.ty).unwrap_or(0);
         let (base, offset) = self.based(pointer);
         let kind = match self.body.exprs[base].kind {
@@ -79,7 +79,7 @@ impl Sema<'_> {
             _ => PlaceKind::Pointer(base, offset),
         };
         let place = self.body.place(kind, ty.ty, span);
-        Located { place, ty, is_lvalue: true }
+        TypedPlace { place, ty, is_lvalue: true }
     }
 
     /// A pointer as another one plus a constant number of bytes; casts from pointer to pointer are left out.
@@ -153,7 +153,13 @@ impl Sema<'_> {
     }
 
     /// A part of an object: a member of a structure or an element of an array.
-    pub(super) fn part(&mut self, whole: Located, offset: u32, ty: QualifiedType, span: Span) -> Located {
+    pub(super) fn part(
+        &mut self,
+        whole: TypedPlace,
+        offset: u32,
+        ty: QualifiedType,
+        span: Span,
+    ) -> TypedPlace {
         let kind = self.body.places[whole.place].kind;
         let moved = i32::try_from(offset).ok().and_then(|offset| self.moved(kind, offset));
         let place = self.body.place(moved.unwrap_or(kind), ty.ty, span);
@@ -162,17 +168,17 @@ impl Sema<'_> {
             is_const: ty.is_const || whole.ty.is_const,
             is_volatile: ty.is_volatile || whole.ty.is_volatile,
         };
-        Located { place, ty, is_lvalue: whole.is_lvalue }
+        TypedPlace { place, ty, is_lvalue: whole.is_lvalue }
     }
 
     /// A member of a structure or union.
-    pub(super) fn member_of(&mut self, whole: Located, member: &Member, span: Span) -> Located {
+    pub(super) fn member_of(&mut self, whole: TypedPlace, member: &Member, span: Span) -> TypedPlace {
         let part = self.part(whole, member.offset, member.ty, span);
         match member.bits {
             None => part,
             Some(bits) => {
                 let place = self.body.place(PlaceKind::Bits(part.place, bits), member.ty.ty, span);
-                Located { place, ..part }
+                TypedPlace { place, ..part }
             }
         }
     }

@@ -60,12 +60,12 @@ const NONE: Link = u32::MAX;
 
 /// The bindings of one name space.
 #[derive(Debug)]
-pub(super) struct Space<E> {
+pub(super) struct NameSpace<E> {
     heads: SecondaryMap<Name, Link>,
     bindings: Vec<Binding<E>>,
 }
 
-impl<E: Copy> Space<E> {
+impl<E: Copy> NameSpace<E> {
     fn new() -> Self {
         Self { heads: SecondaryMap::with_default(NONE), bindings: Vec::new() }
     }
@@ -94,8 +94,8 @@ impl<E: Copy> Space<E> {
 /// Every scope that is open.
 #[derive(Debug)]
 pub(super) struct Scopes {
-    ordinary: Space<Entity>,
-    tags: Space<Tag>,
+    ordinary: NameSpace<Entity>,
+    tags: NameSpace<Tag>,
     /// For each open block, the numbers of bindings when it was opened.
     blocks: Vec<(usize, usize)>,
     /// The item being analysed.
@@ -104,14 +104,14 @@ pub(super) struct Scopes {
 
 /// The bindings of a parameter list, kept until the body is analysed.
 #[derive(Debug, Default)]
-pub(super) struct Closed {
+pub(super) struct ClosedScope {
     ordinary: Vec<Binding<Entity>>,
     tags: Vec<Binding<Tag>>,
 }
 
 impl Scopes {
     pub(super) fn new() -> Self {
-        Self { ordinary: Space::new(), tags: Space::new(), blocks: Vec::new(), now: 0 }
+        Self { ordinary: NameSpace::new(), tags: NameSpace::new(), blocks: Vec::new(), now: 0 }
     }
 
     /// Sets the file scope to the declarations that item number `item` sees.
@@ -125,13 +125,13 @@ impl Scopes {
     }
 
     /// Closes the innermost block.
-    pub(super) fn leave(&mut self) -> Closed {
+    pub(super) fn leave(&mut self) -> ClosedScope {
         let (ordinary, tags) = self.blocks.pop().unwrap_or_default();
-        Closed { ordinary: self.ordinary.unwind(ordinary), tags: self.tags.unwind(tags) }
+        ClosedScope { ordinary: self.ordinary.unwind(ordinary), tags: self.tags.unwind(tags) }
     }
 
     /// Opens a block with the bindings of one that was closed.
-    pub(super) fn reopen(&mut self, closed: Closed) {
+    pub(super) fn reopen(&mut self, closed: ClosedScope) {
         self.enter();
         closed.ordinary.into_iter().for_each(|binding| self.ordinary.push(binding));
         closed.tags.into_iter().for_each(|binding| self.tags.push(binding));

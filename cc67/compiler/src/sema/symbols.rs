@@ -10,7 +10,7 @@ use crate::typed::{Definition, Linkage, StaticData, Symbol, SymbolId};
 
 /// The calling convention of a function that this unit defines.
 #[derive(Clone, Debug)]
-pub(super) struct Definer {
+pub(super) struct CallingConvention {
     /// The type to which every call is converted; its parameters are always a prototype.
     pub(super) call: FunctionType,
     /// The type as declared, for comparison with other declarations.
@@ -23,9 +23,9 @@ pub(super) struct Definer {
 
 /// Facts about a symbol other than its typed form.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Facts {
+pub(super) struct SymbolFacts {
     /// For a function that this unit defines.
-    pub(super) definer: Option<Definer>,
+    pub(super) convention: Option<CallingConvention>,
     /// The undeclared use was reported.
     pub(super) is_reported: bool,
 }
@@ -34,7 +34,7 @@ pub(super) struct Facts {
 #[derive(Debug, Default)]
 pub(super) struct Symbols {
     table: PrimaryMap<SymbolId, Symbol>,
-    facts: SecondaryMap<SymbolId, Facts>,
+    facts: SecondaryMap<SymbolId, SymbolFacts>,
     /// The symbol of a name with linkage.
     linked: SecondaryMap<Name, PackedOption<SymbolId>>,
     /// Number of the next symbol that no program can name.
@@ -97,12 +97,12 @@ impl Symbols {
     }
 
     /// The further facts about a symbol.
-    pub(super) fn facts(&self, symbol: SymbolId) -> &Facts {
+    pub(super) fn facts(&self, symbol: SymbolId) -> &SymbolFacts {
         &self.facts[symbol]
     }
 
     /// The further facts about a symbol, mutable.
-    pub(super) fn facts_mut(&mut self, symbol: SymbolId) -> &mut Facts {
+    pub(super) fn facts_mut(&mut self, symbol: SymbolId) -> &mut SymbolFacts {
         &mut self.facts[symbol]
     }
 

@@ -40,7 +40,7 @@ impl Sema<'_> {
         }
         let entry = self.symbols.get(symbol);
         let (name, place, ty) = (entry.name.clone(), entry.span, entry.ty);
-        let is_defined = self.symbols.facts(symbol).definer.is_some();
+        let is_defined = self.symbols.facts(symbol).convention.is_some();
         let prototype = self.types.spell_declaration(self.names, ty, &name);
         let (lint, at) = match (is_defined, self.is_plain(ty)) {
             (true, true) => (Lint::LateDefinition, "the definition further down is used"),

@@ -11,7 +11,7 @@ use runtime::{Event, EventKind};
 
 use super::{Controller, link};
 use crate::clock::now;
-use crate::recording::{BoardRecording, BoardSample, Unrecordable};
+use crate::recording::{BoardRecording, BoardSample, RecordingError};
 
 impl Controller {
     /// Starts the programs that wait until time passes.
@@ -30,7 +30,7 @@ impl Controller {
         self.read(self.place_of(GATHER_BUFFER.address()), &mut pointer)?;
         let buffer = GuestAddr::new(u32::from_le_bytes(pointer));
         let recording = BoardRecording::new(request, |address| self.seen.place_of(address), buffer);
-        let recording = recording.map_err(|Unrecordable(what)| HostError::Link(what))?;
+        let recording = recording.map_err(|RecordingError(what)| HostError::Link(what))?;
         recording.begin(self.client.get_mut()).map_err(link)?;
         self.recording = Some(recording);
         Ok(())

@@ -7,7 +7,7 @@ use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
 use kmotiondef::{AxisId, Bit, ThreadId};
 use runtime::EventKind;
-use runtime::stimulus::{Action, Stored, Subject};
+use runtime::stimulus::{Action, Subject, UserDataFormat};
 
 use super::Controller;
 use crate::bench::{BenchAct, BenchFacts};
@@ -82,11 +82,13 @@ impl BenchFacts for Controller {
         };
         match subject {
             Subject::Item(item, _) => Some(Target::value(self, *item)).filter(|value| !value.is_nan()),
-            Subject::Persist(index, Stored::Whole) => word(*index).map(|word| f64::from(word.cast_signed())),
-            Subject::Persist(index, Stored::Single) => {
+            Subject::Persist(index, UserDataFormat::Whole) => {
+                word(*index).map(|word| f64::from(word.cast_signed()))
+            }
+            Subject::Persist(index, UserDataFormat::Single) => {
                 word(*index).map(|word| f64::from(f32::from_bits(word)))
             }
-            Subject::Persist(index, Stored::Double) => {
+            Subject::Persist(index, UserDataFormat::Double) => {
                 let (low, high) = (u64::from(word(*index)?), u64::from(word(*index + 1)?));
                 Some(f64::from_bits(high << 32 | low))
             }

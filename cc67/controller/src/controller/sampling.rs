@@ -14,14 +14,14 @@ use crate::sampler::{SampledRow, Sampler};
 
 /// The sampler of a board, and the rows that have not been taken yet.
 #[derive(Debug)]
-pub(super) struct Sampling {
+pub(super) struct ActiveSampling {
     sampler: Sampler,
     /// The time of power-up, in seconds of this session.
     power_up: f64,
     rows: Vec<(Ticks, Vec<f64>)>,
 }
 
-impl Sampling {
+impl ActiveSampling {
     /// Takes the rows since the last call.
     pub(super) fn take(&mut self) -> Vec<(Ticks, Vec<f64>)> {
         mem::take(&mut self.rows)
@@ -62,7 +62,7 @@ impl Controller {
         self.monitor.get_mut().forget(thread);
         self.threads.note_served(thread);
         let rate = sampler.rate();
-        self.sampling = Some(Sampling { sampler, power_up, rows: Vec::new() });
+        self.sampling = Some(ActiveSampling { sampler, power_up, rows: Vec::new() });
         Ok(rate)
     }
 

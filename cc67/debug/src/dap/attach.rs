@@ -11,13 +11,13 @@ use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::time::Duration;
 
-use cc67_host::{AnyTarget, Attendant, Idle, Session};
+use cc67_host::{AnyTarget, Attendant, IdleWork, Session};
 use kmotiondef::Ticks;
 use runtime::Event;
 use serde_json::Value;
 
 use super::door::{Editor, editors};
-use super::{Herald, Server, read};
+use super::{OutputReporter, Server, read};
 use crate::debugger::{Debugger, Reason};
 use crate::shell::Shell;
 
@@ -29,7 +29,7 @@ const PATIENCE: Duration = Duration::from_millis(10);
 pub struct AttachPoint {
     address: SocketAddr,
     clients: Receiver<Editor>,
-    visitor: Option<Visitor>,
+    visitor: Option<AttachedEditor>,
 }
 
 impl AttachPoint {
@@ -56,12 +56,15 @@ impl Attendant<AnyTarget> for AttachPoint {
         session: &mut Session<AnyTarget>,
         limit: Ticks,
         events: &mut dyn FnMut(Event),
-        idle: Idle<'_, AnyTarget>,
+        idle: IdleWork<'_, AnyTarget>,
     ) {
         if self.visitor.is_none() {
             // A connection that is lost before it is accepted is ignored.
-            self.visitor =
-                self.clients.try_recv().ok().and_then(|editor| Visitor::new(editor.into_stream()).ok());
+            self.visitor = self
+                .clients
+                .try_recv()
+                .ok()
+                .and_then(|editor| AttachedEditor::new(editor.into_stream()).ok());
         }
         let Some(visitor) = &mut self.visitor else { return session.advance(limit, events) };
         visitor.swap(session);
@@ -78,18 +81,18 @@ impl Attendant<AnyTarget> for AttachPoint {
 }
 
 /// An attached editor.
-struct Visitor {
+struct AttachedEditor {
     server: Server<'static, TcpStream, AnyTarget>,
     requests: Receiver<Value>,
 }
 
-impl std::fmt::Debug for Visitor {
+impl std::fmt::Debug for AttachedEditor {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         formatter.write_str("Visitor")
     }
 }
 
-impl Visitor {
+impl AttachedEditor {
     fn new(stream: TcpStream) -> io::Result<Self> {
         stream.set_nodelay(true)?;
         let requests = read(BufReader::new(stream.try_clone()?), Arc::new(AtomicBool::new(false)));
@@ -106,7 +109,12 @@ impl Visitor {
     }
 
     /// Serves the editor and runs the board; returns whether the editor remains attached.
-    fn advance(&mut self, limit: Ticks, events: &mut dyn FnMut(Event), idle: Idle<'_, AnyTarget>) -> bool {
+    fn advance(
+        &mut self,
+        limit: Ticks,
+        events: &mut dyn FnMut(Event),
+        idle: IdleWork<'_, AnyTarget>,
+    ) -> bool {
         loop {
             match self.answer() {
                 Ok(true) => {}
@@ -128,12 +136,12 @@ impl Visitor {
             if debugger.session().held().is_none() && debugger.session().tick() >= limit {
                 return true;
             }
-            let mut herald = Herald::new(&mut server.wire, &mut server.early, debugger);
+            let mut herald = OutputReporter::new(&mut server.wire, &mut server.early, debugger);
             let stop = debugger.proceed(&goal, limit, &mut |event| {
                 herald.tell(event);
                 events(event.clone());
             });
-            let Herald { failed, late, .. } = herald;
+            let OutputReporter { failed, late, .. } = herald;
             if failed.is_some() || !late.is_empty() && server.wire.output("console", &late).is_err() {
                 return false;
             }

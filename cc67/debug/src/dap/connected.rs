@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use cc67_host::{Capability, Target};
 use serde_json::Value;
 
-use super::{Move, Server};
+use super::{MoveRequest, Server};
 use crate::debugger::StepKind;
 
 /// The message of the editor's console when programs of a controller start.
@@ -20,12 +20,12 @@ impl<W: Write, T: Target> Server<'_, W, T> {
     }
 
     /// The movement that begins a launch: the programs of a controller are started first.
-    pub(super) fn first_move(&mut self) -> io::Result<Move> {
+    pub(super) fn first_move(&mut self) -> io::Result<MoveRequest> {
         if self.is_connected() {
             self.wire.output("console", RUNS_ON)?;
-            return Ok(Move::Again);
+            return Ok(MoveRequest::Again);
         }
-        Ok(Move::Forward(StepKind::Continue))
+        Ok(MoveRequest::Forward(StepKind::Continue))
     }
 
     /// Kills the programs that were launched on a controller, unless the client wants them to continue.

@@ -120,7 +120,7 @@ struct Server<'a, W, T: Target> {
 
 /// A movement of the board that a client requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Move {
+enum MoveRequest {
     Forward(StepKind),
     Back,
     BackInstruction,
@@ -182,18 +182,18 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         }
     }
 
-    fn move_of(&self, command: &str, arguments: &Value) -> Option<Move> {
+    fn move_of(&self, command: &str, arguments: &Value) -> Option<MoveRequest> {
         let is_instruction = arguments["granularity"] == "instruction";
         Some(match command {
-            "continue" => Move::Forward(StepKind::Continue),
-            "next" | "stepIn" if is_instruction => Move::Forward(StepKind::Instruction),
-            "next" => Move::Forward(StepKind::Over),
-            "stepIn" => Move::Forward(StepKind::Into),
-            "stepOut" => Move::Forward(StepKind::Out),
-            "stepBack" if is_instruction => Move::BackInstruction,
-            "stepBack" => Move::Back,
-            "reverseContinue" => Move::BackOn,
-            "restart" => Move::Again,
+            "continue" => MoveRequest::Forward(StepKind::Continue),
+            "next" | "stepIn" if is_instruction => MoveRequest::Forward(StepKind::Instruction),
+            "next" => MoveRequest::Forward(StepKind::Over),
+            "stepIn" => MoveRequest::Forward(StepKind::Into),
+            "stepOut" => MoveRequest::Forward(StepKind::Out),
+            "stepBack" if is_instruction => MoveRequest::BackInstruction,
+            "stepBack" => MoveRequest::Back,
+            "reverseContinue" => MoveRequest::BackOn,
+            "restart" => MoveRequest::Again,
             _ => return None,
         })
     }
@@ -278,11 +278,13 @@ impl<W: Write, T: Target> Server<'_, W, T> {
     }
 
     /// Begins a movement of an existing board; it continues while the owner lets time pass.
-    fn let_go(&mut self, kind: Move) -> io::Result<()> {
+    fn let_go(&mut self, kind: MoveRequest) -> io::Result<()> {
         self.handles.clear();
         let goal = match kind {
-            Move::Forward(way) => self.debugger().and_then(|debugger| debugger.goal(way)),
-            Move::Back | Move::BackInstruction | Move::BackOn | Move::Again => Err(ONLY_FORWARD.into()),
+            MoveRequest::Forward(way) => self.debugger().and_then(|debugger| debugger.goal(way)),
+            MoveRequest::Back | MoveRequest::BackInstruction | MoveRequest::BackOn | MoveRequest::Again => {
+                Err(ONLY_FORWARD.into())
+            }
         };
         match goal {
             Ok(goal) => {
@@ -293,8 +295,8 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         }
     }
 
-    fn do_move(&mut self, request: &Value, kind: Move) -> io::Result<()> {
-        if kind == Move::Again {
+    fn do_move(&mut self, request: &Value, kind: MoveRequest) -> io::Result<()> {
+        if kind == MoveRequest::Again {
             self.interrupt.store(false, Ordering::Relaxed);
         }
         let thread = request["arguments"]["threadId"].as_i64();
@@ -332,25 +334,25 @@ impl<W: Write, T: Target> Server<'_, W, T> {
     }
 
     /// Runs the board; console lines are reported at once.
-    fn run(&mut self, kind: Move) -> io::Result<Result<Stop, DebugError>> {
+    fn run(&mut self, kind: MoveRequest) -> io::Result<Result<Stop, DebugError>> {
         self.handles.clear();
         let Some(shell) = &mut self.shell else { return Ok(Err("nothing is launched yet".into())) };
         let debugger = shell.debugger_mut();
-        let is_forward = matches!(kind, Move::Forward(_) | Move::Again);
-        let mut herald = Herald::new(&mut self.wire, &mut self.early, debugger);
+        let is_forward = matches!(kind, MoveRequest::Forward(_) | MoveRequest::Again);
+        let mut herald = OutputReporter::new(&mut self.wire, &mut self.early, debugger);
         let mut tell = |event: &Event| herald.tell(event);
         let result = match kind {
-            Move::Forward(StepKind::Continue) => Ok(debugger.go_on(&mut tell)),
-            Move::Forward(StepKind::Into) => debugger.step(&mut tell),
-            Move::Forward(StepKind::Over) => debugger.next(&mut tell),
-            Move::Forward(StepKind::Out) => debugger.finish(&mut tell),
-            Move::Forward(StepKind::Instruction) => debugger.step_instruction(&mut tell),
-            Move::Back => debugger.reverse_next(),
-            Move::BackInstruction => Ok(debugger.reverse_step_instruction()),
-            Move::BackOn => Ok(debugger.reverse_continue()),
-            Move::Again => debugger.start_again().map(|()| debugger.go_on(&mut tell)),
+            MoveRequest::Forward(StepKind::Continue) => Ok(debugger.go_on(&mut tell)),
+            MoveRequest::Forward(StepKind::Into) => debugger.step(&mut tell),
+            MoveRequest::Forward(StepKind::Over) => debugger.next(&mut tell),
+            MoveRequest::Forward(StepKind::Out) => debugger.finish(&mut tell),
+            MoveRequest::Forward(StepKind::Instruction) => debugger.step_instruction(&mut tell),
+            MoveRequest::Back => debugger.reverse_next(),
+            MoveRequest::BackInstruction => Ok(debugger.reverse_step_instruction()),
+            MoveRequest::BackOn => Ok(debugger.reverse_continue()),
+            MoveRequest::Again => debugger.start_again().map(|()| debugger.go_on(&mut tell)),
         };
-        let Herald { failed, has_trapped, late, .. } = herald;
+        let OutputReporter { failed, has_trapped, late, .. } = herald;
         self.has_trapped |= has_trapped;
         if let Some(error) = failed {
             return Err(error);
@@ -488,7 +490,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
 }
 
 /// Reports the board's output to a client while it runs.
-struct Herald<'a, W> {
+struct OutputReporter<'a, W> {
     wire: &'a mut ClientWire<W>,
     /// Lines that have already been reported.
     early: &'a mut EarlyLines,
@@ -499,7 +501,7 @@ struct Herald<'a, W> {
     has_trapped: bool,
 }
 
-impl<'a, W: Write> Herald<'a, W> {
+impl<'a, W: Write> OutputReporter<'a, W> {
     fn new<T: Target>(
         wire: &'a mut ClientWire<W>,
         early: &'a mut EarlyLines,

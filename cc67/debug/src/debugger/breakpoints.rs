@@ -4,7 +4,7 @@ use cc67_host::{Capability, Target};
 use compiler::firmware::FirmwareSymbols as _;
 use kmotiondef::{GuestAddr, ThreadId};
 
-use super::values::Prepared;
+use super::values::PreparedExpression;
 use super::{DebugError, Debugger, HitCondition, file_name, place_of};
 use crate::programs::Statement;
 
@@ -63,7 +63,7 @@ pub struct Breakpoint {
     /// The hits at which it stops; `None` for all.
     pub stops_at: Option<HitCondition>,
     /// The condition, compiled for each of its instructions; once for a watched expression.
-    pub(super) conditions: Vec<(u32, Prepared)>,
+    pub(super) conditions: Vec<(u32, PreparedExpression)>,
     /// The line that was requested.
     pub(super) line: u32,
     pub(super) subject: Subject,
@@ -79,7 +79,7 @@ pub(super) enum Subject {
     /// An expression whose memory is accessed, and its value at the last stop.
     Access(WatchedExpression),
     /// An expression that becomes true, and whether it was true at the last tick.
-    Truth(Prepared, bool),
+    Truth(PreparedExpression, bool),
 }
 
 impl Subject {
@@ -130,7 +130,7 @@ impl Breakpoint {
 /// A watched expression.
 #[derive(Debug)]
 pub(super) struct WatchedExpression {
-    pub(super) prepared: Prepared,
+    pub(super) prepared: PreparedExpression,
     /// The memory from which it is read.
     pub(super) ranges: Vec<(GuestAddr, u32)>,
     /// Its own memory, if it is a place in memory.
@@ -293,7 +293,7 @@ impl<T: Target> Debugger<T> {
         &self,
         kind: &BreakpointKind,
         condition: Option<&str>,
-    ) -> Result<Vec<(u32, Prepared)>, DebugError> {
+    ) -> Result<Vec<(u32, PreparedExpression)>, DebugError> {
         let Some(condition) = condition else { return Ok(Vec::new()) };
         match kind {
             BreakpointKind::Code(_, addresses) => {
@@ -323,7 +323,7 @@ impl<T: Target> Debugger<T> {
         &mut self,
         kind: BreakpointKind,
         condition: Option<&str>,
-        conditions: Vec<(u32, Prepared)>,
+        conditions: Vec<(u32, PreparedExpression)>,
     ) -> u32 {
         let id = self.next_id;
         self.next_id += 1;

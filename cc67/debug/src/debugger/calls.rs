@@ -1,10 +1,12 @@
 //! Expressions that call functions, and gdb's extensions: types, consecutive objects, the result of a function.
 
-use compiler::debug::{AllowedCalls, CallRequest, CallResults, DebugValue, Displayed, NumberFormat, Probe};
+use compiler::debug::{
+    AllowedCalls, CallRequest, CallResults, DebugValue, DisplayContext, NumberFormat, Probe,
+};
 use runtime::trace::Item;
 use vm::engine::{CallEnd, ContextId};
 
-use super::values::{At, ShownVariable, string_literal, variable};
+use super::values::{CallContext, ShownVariable, string_literal, variable};
 use super::{CodePlace, DebugError, Debugger};
 use cc67_host::Target;
 
@@ -23,13 +25,13 @@ impl<T: Target> Debugger<T> {
     fn with_called_value<R>(
         &mut self,
         expression: &str,
-        work: impl FnOnce(&DebugValue, &Displayed<'_>) -> R,
+        work: impl FnOnce(&DebugValue, &DisplayContext<'_>) -> R,
     ) -> Result<R, DebugError> {
         let (probe, items) = self.probe(expression, AllowedCalls::Executed)?;
         let (mut results, mut has_called) = (CallResults::default(), false);
         let shown = loop {
             let view = self.view();
-            let at = At::new(self, view.as_ref(), &items);
+            let at = CallContext::new(self, view.as_ref(), &items);
             let value = probe.value_with(&at, &results);
             let Some(call) = results.take_next() else {
                 let value = value?;
@@ -109,7 +111,7 @@ impl<T: Target> Debugger<T> {
     /// The text is neither an expression nor a type.
     pub(crate) fn type_of(&self, text: &str, detail: TypeDetail) -> Result<String, DebugError> {
         let spelled = |(probe, items): (Probe, Vec<Item>)| {
-            let at = At::new(self, None, &items);
+            let at = CallContext::new(self, None, &items);
             let (value, shown) = (probe.type_only(), probe.shown(&at));
             match detail {
                 TypeDetail::Name => shown.type_of(&value),
@@ -142,7 +144,7 @@ impl<T: Target> Debugger<T> {
     pub(crate) fn result_of(&self, place: &CodePlace, context: ContextId) -> Option<ShownVariable> {
         let slot = self.session.target().result(context)?;
         let model = self.programs.of(place.thread).ok()?;
-        let at = At::new(self, None, &[]);
+        let at = CallContext::new(self, None, &[]);
         let (value, shown) = model.result(&place.function, slot, &at)?;
         Some(variable(&place.function, &place.function, &value, &shown))
     }

@@ -178,7 +178,7 @@ pub(crate) struct Position {
 
 /// The events that stop the board.
 #[derive(Clone, Debug, Default)]
-pub struct Catches {
+pub struct Catchpoints {
     /// True if traps do not stop.
     pub no_traps: bool,
     /// True if remarks stop.
@@ -203,7 +203,7 @@ pub struct Debugger<T: Target = Board> {
     breakpoints: Vec<Breakpoint>,
     next_id: u32,
     /// The events that stop the board.
-    pub catches: Catches,
+    pub catches: Catchpoints,
     /// The tick at which a run ends.
     pub limit: Ticks,
     thread: ThreadId,
@@ -237,7 +237,7 @@ impl<T: Target> Debugger<T> {
             programs,
             breakpoints: Vec::new(),
             next_id: 1,
-            catches: Catches::default(),
+            catches: Catchpoints::default(),
             limit,
             thread,
             frame: 0,

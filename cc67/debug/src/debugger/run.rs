@@ -185,7 +185,7 @@ impl<T: Target> Debugger<T> {
         self.session.require(Capability::StopTime)?;
         loop {
             let stop = self.step_tick(events);
-            let is_its = self.session.target().turn() == vm::scheduler::Turn::User(self.thread);
+            let is_its = self.session.target().turn() == vm::scheduler::SliceOwner::User(self.thread);
             if stop.reason != Reason::Time || is_its || self.session.tick() >= self.limit {
                 return Ok(stop);
             }
@@ -420,7 +420,7 @@ impl<T: Target> Debugger<T> {
 /// Returns the reason for which an event stops the board, if it does, and its context.
 pub(super) fn catch(
     event: &Event,
-    catches: &super::Catches,
+    catches: &super::Catchpoints,
     infos: &[runtime::debug::DebugInfo],
 ) -> Option<(Reason, Option<ThreadId>)> {
     match &event.kind {

@@ -22,7 +22,7 @@ pub(crate) const ONLY_FORWARD: &str = "others use this board: it does not go bac
 
 /// The target of a search of the past.
 #[derive(Clone, Debug)]
-enum Wanted {
+enum SearchTarget {
     /// The last stop at a breakpoint or similar.
     Stop,
     /// The beginning of the last line with at most this many enclosing calls.
@@ -33,7 +33,7 @@ enum Wanted {
     Instruction(ContextId),
 }
 
-impl Wanted {
+impl SearchTarget {
     /// The goal of the run that finds it.
     fn goal(&self) -> Goal {
         match self {
@@ -53,7 +53,7 @@ impl Wanted {
 /// The result of the first pass: the number of the hold, counted from 1, and whether more of the past must be searched
 /// to be sure.
 #[derive(Clone, Copy, Debug, Default)]
-struct Found {
+struct SearchResult {
     number: u64,
     is_first: bool,
 }
@@ -61,7 +61,7 @@ struct Found {
 impl<T: Target> Debugger<T> {
     /// Goes back to the last breakpoint, change of a watched expression or trap.
     pub fn reverse_continue(&mut self) -> Stop {
-        self.back(&Wanted::Stop)
+        self.back(&SearchTarget::Stop)
     }
 
     /// Goes back to the beginning of the last line of the selected thread, stepping into called functions.
@@ -70,7 +70,7 @@ impl<T: Target> Debugger<T> {
     /// There is no debug information for the thread's program.
     pub fn reverse_step(&mut self) -> Result<Stop, DebugError> {
         self.programs.of(self.thread)?;
-        Ok(self.back(&Wanted::Line { context: self.context(), depth: usize::MAX }))
+        Ok(self.back(&SearchTarget::Line { context: self.context(), depth: usize::MAX }))
     }
 
     /// Goes back to the beginning of the last line, stepping over called functions.
@@ -81,7 +81,7 @@ impl<T: Target> Debugger<T> {
         self.programs.of(self.thread)?;
         let depth = self.frames(self.context()).len();
         let depth = if depth == 0 { usize::MAX } else { depth };
-        Ok(self.back(&Wanted::Line { context: self.context(), depth }))
+        Ok(self.back(&SearchTarget::Line { context: self.context(), depth }))
     }
 
     /// Goes back to the call of the function.
@@ -95,17 +95,17 @@ impl<T: Target> Debugger<T> {
         let is_inlined = frames.get(self.frame).is_some_and(|frame| frame.real == caller.real);
         let wanted = if is_inlined {
             // The beginning of the line that contains the call.
-            Wanted::Line { context, depth: frames.len() - self.frame - 1 }
+            SearchTarget::Line { context, depth: frames.len() - self.frame - 1 }
         } else {
             let depth = frames.last().map_or(0, |last| last.real + 1) - caller.real;
-            Wanted::Call { context, depth, at: caller.address.get() }
+            SearchTarget::Call { context, depth, at: caller.address.get() }
         };
         Ok(self.back(&wanted))
     }
 
     /// Goes back by one instruction of the thread.
     pub fn reverse_step_instruction(&mut self) -> Stop {
-        self.back(&Wanted::Instruction(self.context()))
+        self.back(&SearchTarget::Instruction(self.context()))
     }
 
     /// Goes back, or forward in the known past, to the end of a tick.
@@ -143,7 +143,7 @@ impl<T: Target> Debugger<T> {
         self.timeline.as_ref()?.before(place)
     }
 
-    fn back(&mut self, wanted: &Wanted) -> Stop {
+    fn back(&mut self, wanted: &SearchTarget) -> Stop {
         let here = self.position();
         let mut bound = here;
         let mut next = self.snapshot_before(None);
@@ -181,7 +181,7 @@ impl<T: Target> Debugger<T> {
 
     /// The reason to stop at a snapshot that was taken within a tick: a user changed something there, so the earlier
     /// history leads to the same position in another state.
-    fn stop_at(&mut self, place: u64, wanted: &Wanted) -> Option<Reason> {
+    fn stop_at(&mut self, place: u64, wanted: &SearchTarget) -> Option<Reason> {
         self.disarm();
         if !self.restore(place) {
             return None;
@@ -190,20 +190,26 @@ impl<T: Target> Debugger<T> {
         let frames = self.session.frames(held);
         let at = frames.first()?.at.get();
         match wanted {
-            Wanted::Stop => self.judge_breakpoints(held, at, false),
-            Wanted::Instruction(context) => (held == *context).then_some(Reason::Step),
-            Wanted::Line { context, depth } => {
+            SearchTarget::Stop => self.judge_breakpoints(held, at, false),
+            SearchTarget::Instruction(context) => (held == *context).then_some(Reason::Step),
+            SearchTarget::Line { context, depth } => {
                 let here = self.line_and_depth(held).filter(|(_, now)| held == *context && now <= depth);
                 here.map(|_| Reason::Step)
             }
-            Wanted::Call { context, depth, at: call } => {
+            SearchTarget::Call { context, depth, at: call } => {
                 (held == *context && frames.len() == *depth && at == *call).then_some(Reason::Step)
             }
         }
     }
 
     /// Searches one interval of the past; if the target is found, the session is taken there.
-    fn search(&mut self, place: u64, begin: &Position, bound: &Position, wanted: &Wanted) -> Option<Reason> {
+    fn search(
+        &mut self,
+        place: u64,
+        begin: &Position,
+        bound: &Position,
+        wanted: &SearchTarget,
+    ) -> Option<Reason> {
         let mut window = if wanted.is_stop() { u64::MAX } else { WINDOW };
         loop {
             let from = Ticks::new(bound.tick.get().saturating_sub(window)).max(begin.tick);
@@ -225,12 +231,12 @@ impl<T: Target> Debugger<T> {
         place: u64,
         from: Ticks,
         bound: &Position,
-        wanted: &Wanted,
+        wanted: &SearchTarget,
         number: Option<u64>,
-    ) -> (Found, Option<Reason>) {
+    ) -> (SearchResult, Option<Reason>) {
         self.disarm();
         if !self.restore(place) {
-            return (Found::default(), None);
+            return (SearchResult::default(), None);
         }
         if let Some(timeline) = self.timeline.as_mut().filter(|_| from > self.session.tick()) {
             timeline.replay(&mut self.session, from);
@@ -247,11 +253,11 @@ impl<T: Target> Debugger<T> {
     fn way_armed(
         &mut self,
         bound: &Position,
-        wanted: &Wanted,
+        wanted: &SearchTarget,
         goal: &Goal,
         number: Option<u64>,
-    ) -> (Found, Option<Reason>) {
-        let (mut found, mut count, mut last) = (Found::default(), 0, None);
+    ) -> (SearchResult, Option<Reason>) {
+        let (mut found, mut count, mut last) = (SearchResult::default(), 0, None);
         let catches = self.catches.clone();
         let infos: Vec<_> = self.session.debug().into_iter().map(|(_, info)| info).collect();
         loop {
@@ -272,17 +278,17 @@ impl<T: Target> Debugger<T> {
             }
             let is_over = self.session.held().is_none() && self.session.tick() >= bound.tick;
             let reason = match (hold, wanted) {
-                (Some(hold), Wanted::Stop) => self.judge(hold, goal, false),
-                (Some(hold), Wanted::Instruction(context)) => {
+                (Some(hold), SearchTarget::Stop) => self.judge(hold, goal, false),
+                (Some(hold), SearchTarget::Instruction(context)) => {
                     (hold.context == *context).then_some(Reason::Step)
                 }
-                (Some(hold), Wanted::Line { context, depth }) if hold.context == *context => {
+                (Some(hold), SearchTarget::Line { context, depth }) if hold.context == *context => {
                     let here = self.line_and_depth(hold.context).filter(|(_, now)| now <= depth);
                     let is_new = here.is_some() && here != last;
                     last = here.or(last);
                     is_new.then_some(Reason::Step)
                 }
-                (Some(hold), Wanted::Call { context, depth, at }) => {
+                (Some(hold), SearchTarget::Call { context, depth, at }) => {
                     let frames = self.session.frames(hold.context);
                     let is_it = hold.context == *context
                         && frames.len() == *depth
@@ -291,7 +297,7 @@ impl<T: Target> Debugger<T> {
                 }
                 (Some(_), _) => None,
                 // Events at the very last tick are at the present position already.
-                (None, Wanted::Stop) => {
+                (None, SearchTarget::Stop) => {
                     let changed = self.judge_tick(false);
                     caught.map(|(reason, _)| reason).or(changed).filter(|_| !is_over)
                 }
@@ -299,8 +305,10 @@ impl<T: Target> Debugger<T> {
             };
             if let Some(reason) = reason {
                 count += 1;
-                found =
-                    Found { number: count, is_first: count == 1 && matches!(wanted, Wanted::Line { .. }) };
+                found = SearchResult {
+                    number: count,
+                    is_first: count == 1 && matches!(wanted, SearchTarget::Line { .. }),
+                };
                 if number == Some(count) {
                     return (found, Some(reason));
                 }

@@ -3,8 +3,8 @@
 use std::cell::{Cell, RefCell};
 
 use compiler::debug::{
-    AllowedCalls, Child, DebugReader, DebugValue, Displayed, LocalModel, LocalPlace, Location, NumberFormat,
-    Probe,
+    AllowedCalls, Child, DebugReader, DebugValue, DisplayContext, LocalModel, LocalPlace, Location,
+    NumberFormat, Probe,
 };
 use kmotiondef::{Axes, GuestAddr};
 use runtime::trace::Item;
@@ -38,7 +38,7 @@ pub struct ShownVariable {
 }
 
 /// A board and a call, as expressions read them.
-pub(crate) struct At<'a, T> {
+pub(crate) struct CallContext<'a, T> {
     session: &'a Session<T>,
     programs: &'a Programs,
     view: Option<&'a FrameView>,
@@ -51,7 +51,7 @@ pub(crate) struct At<'a, T> {
     failed: RefCell<Option<DebugError>>,
 }
 
-impl<'a, T> At<'a, T> {
+impl<'a, T> CallContext<'a, T> {
     pub(super) fn new(debugger: &'a Debugger<T>, view: Option<&'a FrameView>, items: &'a [Item]) -> Self
     where
         T: Target,
@@ -69,14 +69,14 @@ impl<'a, T> At<'a, T> {
 
 /// An expression that was compiled once, for the place where it was set.
 #[derive(Debug)]
-pub(super) struct Prepared {
+pub(super) struct PreparedExpression {
     probe: Probe,
     items: Vec<Item>,
     /// The call that it is of: its context, and how many calls of the machine there were with it.
     pub(super) frame: Option<(ContextId, usize)>,
 }
 
-impl<T: Target> DebugReader for At<'_, T> {
+impl<T: Target> DebugReader for CallContext<'_, T> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
         if let Some(reads) = &self.reads {
             reads.borrow_mut().push(address);
@@ -116,12 +116,12 @@ impl<T: Target> DebugReader for At<'_, T> {
 }
 
 /// A board, as expressions without locals read it every tick.
-struct Outside<'a, T> {
+struct TickContext<'a, T> {
     target: &'a T,
     items: &'a [Item],
 }
 
-impl<T: Target> DebugReader for Outside<'_, T> {
+impl<T: Target> DebugReader for TickContext<'_, T> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
         // A value that is unknown counts as 0.
         self.word(address).unwrap_or_default()
@@ -230,23 +230,27 @@ impl<T: Target> Debugger<T> {
     }
 
     /// An expression, compiled for the selected call.
-    pub(super) fn prepare(&self, expression: &str) -> Result<Prepared, DebugError> {
+    pub(super) fn prepare(&self, expression: &str) -> Result<PreparedExpression, DebugError> {
         let (probe, items) = self.probe(expression, AllowedCalls::Computed)?;
         let depth = |call: StackFrame| self.session.frames(self.context()).len() - call.real;
         let call = self.call().filter(|_| probe.has_locals());
-        Ok(Prepared { probe, items, frame: call.map(|call| (self.context(), depth(call))) })
+        Ok(PreparedExpression { probe, items, frame: call.map(|call| (self.context(), depth(call))) })
     }
 
     /// An expression, compiled for an instruction.
-    pub(super) fn prepare_at(&self, address: u32, expression: &str) -> Result<Prepared, DebugError> {
+    pub(super) fn prepare_at(
+        &self,
+        address: u32,
+        expression: &str,
+    ) -> Result<PreparedExpression, DebugError> {
         let thread = self.programs.at(address).map_or(self.thread, |(thread, ..)| thread);
         let (probe, items) =
             compile(&self.programs, thread, Some((address, 0)), expression, AllowedCalls::Computed)?;
-        Ok(Prepared { probe, items, frame: None })
+        Ok(PreparedExpression { probe, items, frame: None })
     }
 
     /// The call that an expression was compiled for, if it is still in progress.
-    fn view_of(&self, prepared: &Prepared) -> Option<FrameView> {
+    fn view_of(&self, prepared: &PreparedExpression) -> Option<FrameView> {
         let (context, depth) = prepared.frame?;
         let mut views = self.session.frames(context);
         let index = views.len().checked_sub(depth)?;
@@ -254,8 +258,8 @@ impl<T: Target> Debugger<T> {
     }
 
     /// Returns whether an expression is not 0 in a call.
-    fn is_true(&self, prepared: &Prepared, view: Option<&FrameView>) -> Result<bool, DebugError> {
-        let at = At::new(self, view, &prepared.items);
+    fn is_true(&self, prepared: &PreparedExpression, view: Option<&FrameView>) -> Result<bool, DebugError> {
+        let at = CallContext::new(self, view, &prepared.items);
         let value = prepared.probe.value(&at)?;
         Ok(prepared.probe.shown(&at).number(&value).is_some_and(|number| number != 0.0))
     }
@@ -265,19 +269,19 @@ impl<T: Target> Debugger<T> {
         let Subject::Truth(prepared, _) = &breakpoint.subject else { return false };
         if prepared.probe.has_locals() {
             let view = self.view_of(prepared);
-            return prepared.probe.is_true(&At::new(self, view.as_ref(), &prepared.items));
+            return prepared.probe.is_true(&CallContext::new(self, view.as_ref(), &prepared.items));
         }
-        prepared.probe.is_true(&Outside { target: self.session.target(), items: &prepared.items })
+        prepared.probe.is_true(&TickContext { target: self.session.target(), items: &prepared.items })
     }
 
     fn with_value<R>(
         &self,
         expression: &str,
-        work: impl FnOnce(&Probe, &DebugValue, &Displayed<'_>) -> R,
+        work: impl FnOnce(&Probe, &DebugValue, &DisplayContext<'_>) -> R,
     ) -> Result<R, DebugError> {
         let (probe, items) = self.probe(expression, AllowedCalls::Computed)?;
         let view = self.view();
-        let at = At::new(self, view.as_ref(), &items);
+        let at = CallContext::new(self, view.as_ref(), &items);
         let value = probe.value(&at)?;
         let worked = work(&probe, &value, &probe.shown(&at));
         at.checked(worked)
@@ -338,7 +342,7 @@ impl<T: Target> Debugger<T> {
         let Some(call) = self.call() else { return Vec::new() };
         let activations = self.programs.activations(call.address.get());
         let Some(Activation { model, scope, .. }) = activations.get(call.level) else { return Vec::new() };
-        let at = At::new(self, Some(&call.view), &[]);
+        let at = CallContext::new(self, Some(&call.view), &[]);
         let visible = |local: &&LocalModel| local.lines.contains(&scope.line);
         let mut shown: Vec<ShownVariable> = Vec::new();
         for local in scope.locals.iter().filter(visible) {
@@ -383,7 +387,7 @@ impl<T: Target> Debugger<T> {
     pub fn arguments(&self, call: &StackFrame) -> Vec<String> {
         let activations = self.programs.activations(call.address.get());
         let Some(Activation { model, scope, .. }) = activations.get(call.level) else { return Vec::new() };
-        let at = At::new(self, Some(&call.view), &[]);
+        let at = CallContext::new(self, Some(&call.view), &[]);
         let text = |local: &LocalModel| {
             let value = model.local(local, &at).map(|(value, types)| types.text(&value));
             format!("{}={}", local.name, value.as_deref().unwrap_or("<optimized out>"))
@@ -395,7 +399,7 @@ impl<T: Target> Debugger<T> {
     #[must_use]
     pub fn globals(&self) -> Vec<ShownVariable> {
         let Ok(model) = self.programs.of(self.thread) else { return Vec::new() };
-        let at = At::new(self, None, &[]);
+        let at = CallContext::new(self, None, &[]);
         let all = model.globals();
         let shown = all.iter().filter_map(|(name, _, address)| {
             let (value, types) = model.global(name, *address, &at)?;
@@ -413,7 +417,7 @@ impl<T: Target> Debugger<T> {
         let (probe, items) = self.probe(expression, AllowedCalls::Computed)?;
         let view = self.view();
         let (bytes, address, register) = {
-            let at = At::new(self, view.as_ref(), &items);
+            let at = CallContext::new(self, view.as_ref(), &items);
             let place = probe.value(&at)?;
             let bytes = probe.bytes_of(&place, number, &at);
             let bytes = bytes.ok_or_else(|| format!("`{expression}` takes no number"))?;
@@ -468,7 +472,7 @@ impl<T: Target> Debugger<T> {
     pub(super) fn holds(
         &self,
         context: ContextId,
-        conditions: &[(u32, Prepared)],
+        conditions: &[(u32, PreparedExpression)],
     ) -> Result<bool, DebugError> {
         if let [(0, prepared)] = conditions {
             return self.is_true(prepared, self.view_of(prepared).as_ref());
@@ -504,7 +508,7 @@ impl<T: Target> Debugger<T> {
     pub(super) fn watched(&self, expression: &str) -> Result<WatchedExpression, DebugError> {
         let prepared = self.prepare(expression)?;
         let view = self.view();
-        let mut at = At::new(self, view.as_ref(), &prepared.items);
+        let mut at = CallContext::new(self, view.as_ref(), &prepared.items);
         at.reads = Some(RefCell::default());
         let value = prepared.probe.value(&at)?;
         let shown = prepared.probe.shown(&at);
@@ -522,7 +526,7 @@ impl<T: Target> Debugger<T> {
     pub(super) fn watched_text(&self, watched: &WatchedExpression) -> Option<String> {
         let WatchedExpression { prepared, .. } = watched;
         let view = self.view_of(prepared);
-        let at = At::new(self, view.as_ref(), &prepared.items);
+        let at = CallContext::new(self, view.as_ref(), &prepared.items);
         let value = prepared.probe.value(&at).ok()?;
         Some(prepared.probe.shown(&at).text(&value))
     }
@@ -589,7 +593,7 @@ pub(super) fn variable(
     name: &str,
     expression: &str,
     value: &DebugValue,
-    shown: &Displayed<'_>,
+    shown: &DisplayContext<'_>,
 ) -> ShownVariable {
     ShownVariable {
         name: name.to_owned(),

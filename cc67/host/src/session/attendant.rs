@@ -10,7 +10,7 @@ use runtime::Event;
 use super::Session;
 
 /// The work done while an attendant holds the board; returns whether the attendant may continue to hold it.
-pub type Idle<'a, T> = &'a mut dyn FnMut(&mut Session<T>) -> ControlFlow<()>;
+pub type IdleWork<'a, T> = &'a mut dyn FnMut(&mut Session<T>) -> ControlFlow<()>;
 
 /// A party through which the owner of a session lets time pass, and which can stop time: a debugger attached by an
 /// editor.
@@ -22,6 +22,6 @@ pub trait Attendant<T: Target>: Debug {
         session: &mut Session<T>,
         limit: Ticks,
         events: &mut dyn FnMut(Event),
-        idle: Idle<'_, T>,
+        idle: IdleWork<'_, T>,
     );
 }

@@ -9,9 +9,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::target::Target;
 use kmotiondef::{ThreadId, Ticks};
 use runtime::EventKind;
-use vm::scheduler::Turn;
+use vm::scheduler::SliceOwner;
 
-use super::until::Heard;
+use super::until::StepEvents;
 use super::{Session, Until};
 use crate::target::EventSink;
 
@@ -80,12 +80,12 @@ impl<T: Target> Session<T> {
     ///
     /// An [expression](Until::True) is evaluated after every tick.
     pub fn run_until(&mut self, condition: &Until, limit: Ticks, events: EventSink<'_>) -> bool {
-        let mut heard = Heard::default();
+        let mut heard = StepEvents::default();
         while !condition.is_met(self, &heard) {
             if self.tick() >= limit {
                 return false;
             }
-            heard = Heard::default();
+            heard = StepEvents::default();
             let next = if condition.needs_every_tick() { self.tick().next() } else { limit };
             self.step(next.min(limit), &mut |event| {
                 condition.hear(&event, &mut heard);
@@ -105,7 +105,7 @@ impl<T: Target> Session<T> {
     pub fn step_slice(&mut self, limit: Ticks, events: EventSink<'_>) -> Option<ThreadId> {
         while self.tick() < limit {
             self.step_tick(events);
-            if let Turn::User(thread) = self.target.turn() {
+            if let SliceOwner::User(thread) = self.target.turn() {
                 return Some(thread);
             }
         }

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use crate::target::Target;
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, ThreadId};
-use runtime::standing::{Awaited, Owner, OwnerState, Source, Standing, StandingAxis, StandingThread};
+use runtime::standing::{
+    AwaitedState, Owner, OwnerState, Source, ThreadActivity, UnfinishedThread, UsedAxis,
+};
 
 use super::Session;
 use super::condition::WaitCondition;
@@ -14,16 +16,16 @@ use crate::remark::SourceCall;
 
 /// Threads that have not ended, and the axes that programs have used.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Ending {
+pub struct EndReport {
     /// The threads.
-    pub threads: Vec<EndingThread>,
+    pub threads: Vec<ThreadReport>,
     /// The axes.
-    pub axes: Vec<EndingAxis>,
+    pub axes: Vec<AxisReport>,
 }
 
 /// A thread that has not ended.
 #[derive(Clone, Debug, PartialEq)]
-pub struct EndingThread {
+pub struct ThreadReport {
     /// Its number.
     pub thread: ThreadId,
     /// `computing`, `waiting`, `paused` or `idle`.
@@ -38,7 +40,7 @@ pub struct EndingThread {
 
 /// An axis that programs have used.
 #[derive(Clone, Debug, PartialEq)]
-pub struct EndingAxis {
+pub struct AxisReport {
     /// Its number.
     pub axis: AxisId,
     /// Its name in the machine file; empty if it has none.
@@ -55,7 +57,7 @@ pub struct EndingAxis {
     pub why: Vec<String>,
 }
 
-impl Ending {
+impl EndReport {
     /// Returns whether no thread is left but those that were paused.
     #[must_use]
     pub fn has_all_ended(&self) -> bool {
@@ -63,7 +65,7 @@ impl Ending {
     }
 }
 
-impl fmt::Display for Ending {
+impl fmt::Display for EndReport {
     /// A line for each thread and for each axis, indented.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, line) in self.lines().iter().enumerate() {
@@ -73,7 +75,7 @@ impl fmt::Display for Ending {
     }
 }
 
-impl Ending {
+impl EndReport {
     /// The states at the end, as lines.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
@@ -82,7 +84,7 @@ impl Ending {
     }
 }
 
-impl fmt::Display for EndingThread {
+impl fmt::Display for ThreadReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "thread {}", self.thread)?;
         for (index, call) in self.calls.iter().enumerate() {
@@ -100,7 +102,7 @@ impl fmt::Display for EndingThread {
     }
 }
 
-impl fmt::Display for EndingAxis {
+impl fmt::Display for AxisReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "axis {}", self.axis)?;
         if !self.name.is_empty() {
@@ -128,46 +130,52 @@ fn number(value: f64) -> String {
 impl<T: Target> Session<T> {
     /// Returns the present state: the threads that have not ended with the reasons for which they wait, and the axes.
     #[must_use]
-    pub fn ending(&self) -> Ending {
+    pub fn ending(&self) -> EndReport {
         let threads = self.target.standing_threads().into_iter().map(|thread| self.ending_thread(thread));
-        Ending {
+        EndReport {
             threads: threads.collect(),
             axes: self.target.standing_axes().into_iter().map(ending_axis).collect(),
         }
     }
 
-    fn ending_thread(&self, standing: StandingThread) -> EndingThread {
-        let StandingThread { thread, state, calls, since, awaited } = standing;
+    fn ending_thread(&self, standing: UnfinishedThread) -> ThreadReport {
+        let UnfinishedThread { thread, state, calls, since, awaited } = standing;
         let calls: Vec<_> = calls.into_iter().flat_map(|at| self.source_calls(at)).collect();
         // An endless loop that looks at its own output does not wait for it.
         let is_endless = calls.first().is_some_and(|call| self.is_in_endless_loop(thread, call));
-        let is_awaited = |one: &&Awaited| !(is_endless && matches!(one, Awaited::Bit(_, _, Source::Output)));
+        let is_awaited =
+            |one: &&AwaitedState| !(is_endless && matches!(one, AwaitedState::Bit(_, _, Source::Output)));
         let mut waits_for: Vec<_> =
             awaited.iter().filter(is_awaited).map(|one| self.awaited_words(one)).collect();
-        if waits_for.is_empty() && matches!(state, Standing::Slice | Standing::Computing) {
+        if waits_for.is_empty() && matches!(state, ThreadActivity::Slice | ThreadActivity::Computing) {
             waits_for.extend(calls.first().and_then(|call| self.condition(thread, call)));
         }
         let state_word = match state {
-            Standing::Paused => "paused",
-            Standing::Idle => "idle: it was resumed before it was started",
-            Standing::Computing if waits_for.is_empty() => "computing",
-            Standing::Computing | Standing::Until(_) | Standing::Slice | Standing::Call(..) => "waiting",
+            ThreadActivity::Paused => "paused",
+            ThreadActivity::Idle => "idle: it was resumed before it was started",
+            ThreadActivity::Computing if waits_for.is_empty() => "computing",
+            ThreadActivity::Computing
+            | ThreadActivity::Until(_)
+            | ThreadActivity::Slice
+            | ThreadActivity::Call(..) => "waiting",
         };
         if waits_for.is_empty() {
             waits_for.extend(plain_wait(state));
         }
-        EndingThread { thread, state: state_word, calls, waits_for, since: seconds(since) }
+        ThreadReport { thread, state: state_word, calls, waits_for, since: seconds(since) }
     }
 
-    fn awaited_words(&self, awaited: &Awaited) -> String {
+    fn awaited_words(&self, awaited: &AwaitedState) -> String {
         match awaited {
-            Awaited::Bit(bit, level, source) => bit_words(*bit, u8::from(*level), source),
-            Awaited::Motion(axis, -1) => format!("axis {axis}, which is disabled: CheckDone({axis}) is -1"),
-            Awaited::Motion(axis, 0) => format!("the end of the motion of axis {axis}"),
-            Awaited::Motion(axis, _) => format!("axis {axis}, which has ended its motion"),
-            Awaited::Path => "the end of the path".to_owned(),
-            Awaited::Recording => "the end of the recording".to_owned(),
-            Awaited::Lock(owner) => self.lock_words(*owner),
+            AwaitedState::Bit(bit, level, source) => bit_words(*bit, u8::from(*level), source),
+            AwaitedState::Motion(axis, -1) => {
+                format!("axis {axis}, which is disabled: CheckDone({axis}) is -1")
+            }
+            AwaitedState::Motion(axis, 0) => format!("the end of the motion of axis {axis}"),
+            AwaitedState::Motion(axis, _) => format!("axis {axis}, which has ended its motion"),
+            AwaitedState::Path => "the end of the path".to_owned(),
+            AwaitedState::Recording => "the end of the recording".to_owned(),
+            AwaitedState::Lock(owner) => self.lock_words(*owner),
         }
     }
 
@@ -276,12 +284,12 @@ fn source_text(program: &Path, file: &str) -> Option<String> {
 }
 
 /// Describes the wait of a thread that polls nothing.
-fn plain_wait(state: Standing) -> Option<String> {
+fn plain_wait(state: ThreadActivity) -> Option<String> {
     match state {
-        Standing::Until(time) => Some(format!("the time {:.3} s", seconds(time))),
-        Standing::Slice => Some("its next slice".to_owned()),
-        Standing::Call(function, waits) => Some(format!("{function}, which waits {waits}")),
-        Standing::Computing | Standing::Paused | Standing::Idle => None,
+        ThreadActivity::Until(time) => Some(format!("the time {:.3} s", seconds(time))),
+        ThreadActivity::Slice => Some("its next slice".to_owned()),
+        ThreadActivity::Call(function, waits) => Some(format!("{function}, which waits {waits}")),
+        ThreadActivity::Computing | ThreadActivity::Paused | ThreadActivity::Idle => None,
     }
 }
 
@@ -305,10 +313,10 @@ fn bit_words(bit: Bit, level: u8, source: &Source) -> String {
     }
 }
 
-fn ending_axis(standing: StandingAxis) -> EndingAxis {
-    let StandingAxis { axis, name, is_enabled: enabled, dest, position, velocity, reasons, .. } = standing;
+fn ending_axis(standing: UsedAxis) -> AxisReport {
+    let UsedAxis { axis, name, is_enabled: enabled, dest, position, velocity, reasons, .. } = standing;
     let why = reasons.iter().map(ToString::to_string).collect();
-    EndingAxis { axis, name, enabled, dest, position, velocity, why }
+    AxisReport { axis, name, enabled, dest, position, velocity, why }
 }
 
 fn seconds(at: Cycles) -> f64 {

@@ -64,12 +64,12 @@ pub enum WatchError {
 /// It belongs to the programs that were loaded when it was [created](Session::watch): after another program is loaded,
 /// it still reads the same addresses.
 #[derive(Clone, Debug)]
-pub struct Watch(Watched);
+pub struct Watch(WatchKind);
 
 #[derive(Clone, Debug)]
-enum Watched {
+enum WatchKind {
     Item(Item),
-    Compiled(String, Arc<Compiled>),
+    Compiled(String, Arc<CompiledExpression>),
 }
 
 impl Watch {
@@ -77,17 +77,17 @@ impl Watch {
     #[must_use]
     pub fn limits(&self) -> Option<(f64, f64)> {
         match &self.0 {
-            Watched::Item(_) => None,
-            Watched::Compiled(_, compiled) => compiled.expression.limits(),
+            WatchKind::Item(_) => None,
+            WatchKind::Compiled(_, compiled) => compiled.expression.limits(),
         }
     }
 
     /// The present value on a board.
     pub(super) fn value<T: Target>(&self, target: &T) -> f64 {
         match &self.0 {
-            Watched::Item(item) => target.value(*item),
-            Watched::Compiled(_, compiled) => {
-                let reader = OnTarget { target, items: &compiled.items, has_failed: Cell::new(false) };
+            WatchKind::Item(item) => target.value(*item),
+            WatchKind::Compiled(_, compiled) => {
+                let reader = TargetContext { target, items: &compiled.items, has_failed: Cell::new(false) };
                 let value = compiled.expression.value(&reader);
                 if reader.has_failed.get() { f64::NAN } else { value }
             }
@@ -97,8 +97,8 @@ impl Watch {
     /// The watched value in the form that the recorder of a running board takes.
     pub(super) fn into_quantity(self) -> Quantity {
         match self.0 {
-            Watched::Item(item) => item.into(),
-            Watched::Compiled(text, compiled) => Quantity::Formula(text, compiled),
+            WatchKind::Item(item) => item.into(),
+            WatchKind::Compiled(text, compiled) => Quantity::Formula(text, compiled),
         }
     }
 }
@@ -106,8 +106,8 @@ impl Watch {
 impl fmt::Display for Watch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.0 {
-            Watched::Item(item) => item.fmt(f),
-            Watched::Compiled(text, _) => f.write_str(text),
+            WatchKind::Item(item) => item.fmt(f),
+            WatchKind::Compiled(text, _) => f.write_str(text),
         }
     }
 }
@@ -159,8 +159,8 @@ impl<T: Target> Session<T> {
     pub fn place(&self, text: &str) -> Result<Watch, WatchError> {
         let watch = self.watch(&with_user_data(text))?;
         match &watch.0 {
-            Watched::Compiled(_, compiled) if compiled.expression.is_place() => Ok(watch),
-            Watched::Compiled(..) | Watched::Item(_) => Err(WatchError::NoPlace(text.to_owned())),
+            WatchKind::Compiled(_, compiled) if compiled.expression.is_place() => Ok(watch),
+            WatchKind::Compiled(..) | WatchKind::Item(_) => Err(WatchError::NoPlace(text.to_owned())),
         }
     }
 
@@ -170,8 +170,9 @@ impl<T: Target> Session<T> {
     /// A pointer points outside memory.
     pub fn write_to(&mut self, place: &Watch, value: f64) -> Result<(), WatchError> {
         let no_place = || WatchError::NoPlace(place.to_string());
-        let Watch(Watched::Compiled(text, compiled)) = place else { return Err(no_place()) };
-        let reader = OnTarget { target: &self.target, items: &compiled.items, has_failed: Cell::new(false) };
+        let Watch(WatchKind::Compiled(text, compiled)) = place else { return Err(no_place()) };
+        let reader =
+            TargetContext { target: &self.target, items: &compiled.items, has_failed: Cell::new(false) };
         let (address, bytes) = compiled.expression.store(value, &reader).ok_or_else(no_place)?;
         self.target.write(address, &bytes).map_err(|_| no_place())?;
         let tick = self.tick();
@@ -192,7 +193,7 @@ impl<T: Target> Session<T> {
 
 fn watch(text: &str, programs: &[UserProgram], options: &Options) -> Result<Watch, WatchError> {
     match Item::among(options.firmware.board().axes, text) {
-        Ok(item) => Ok(Watch(Watched::Item(item))),
+        Ok(item) => Ok(Watch(WatchKind::Item(item))),
         // An item number that is too high is not the name of a variable.
         Err(error) if Item::is_kind(text.trim_end_matches(|c: char| c.is_ascii_digit())) => Err(error.into()),
         Err(_) => formula(text, programs, options),
@@ -277,7 +278,7 @@ fn formula(text: &str, programs: &[UserProgram], options: &Options) -> Result<Wa
     }
     for words in words {
         match words.and_then(|words| words.compile(&expression, options)) {
-            Ok(compiled) => return Ok(Watch(Watched::Compiled(text.to_owned(), Arc::new(compiled)))),
+            Ok(compiled) => return Ok(Watch(WatchKind::Compiled(text.to_owned(), Arc::new(compiled)))),
             Err(error) => {
                 first_error.get_or_insert(error);
             }
@@ -297,8 +298,8 @@ pub(super) fn for_stimulus(
     options: &Options,
 ) -> Result<Arc<dyn Formula>, String> {
     match formula(text, programs, options) {
-        Ok(Watch(Watched::Compiled(_, compiled))) => Ok(compiled),
-        Ok(Watch(Watched::Item(item))) => Ok(Arc::new(item)),
+        Ok(Watch(WatchKind::Compiled(_, compiled))) => Ok(compiled),
+        Ok(Watch(WatchKind::Item(item))) => Ok(Arc::new(item)),
         Err(error) => Err(error.to_string()),
     }
 }
@@ -322,7 +323,7 @@ pub fn with_user_data(text: &str) -> String {
 
 /// A compiled expression, with the items that it names.
 #[derive(Debug)]
-struct Compiled {
+struct CompiledExpression {
     expression: Expression,
     items: Vec<Item>,
 }
@@ -358,11 +359,11 @@ impl<'a> Vocabulary<'a> {
         Self { path: Path::new("board"), text, symbols: BTreeMap::new() }
     }
 
-    fn compile(&self, text: &str, options: &Options) -> Result<Compiled, String> {
+    fn compile(&self, text: &str, options: &Options) -> Result<CompiledExpression, String> {
         let symbols = &self.symbols;
         let scope = Scope { path: self.path, text: &self.text, symbols, options, files: &Disk };
         let first = match watch::compile(scope, text, &[]) {
-            Ok(expression) => return Ok(Compiled { expression, items: Vec::new() }),
+            Ok(expression) => return Ok(CompiledExpression { expression, items: Vec::new() }),
             Err(error) => error,
         };
         // A name in the program takes precedence over an item; so items are tried second.
@@ -375,7 +376,7 @@ impl<'a> Vocabulary<'a> {
             return Err(first);
         }
         let expression = watch::compile(scope, text, &names)?;
-        Ok(Compiled { expression, items: names.into_iter().filter_map(item).collect() })
+        Ok(CompiledExpression { expression, items: names.into_iter().filter_map(item).collect() })
     }
 }
 
@@ -405,9 +406,9 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|character: char| !(character.is_ascii_alphanumeric() || character == '_'))
 }
 
-impl Formula for Compiled {
+impl Formula for CompiledExpression {
     fn value(&self, view: &View<'_>) -> f64 {
-        self.expression.value(&InView { view, items: &self.items })
+        self.expression.value(&ViewContext { view, items: &self.items })
     }
 
     fn items(&self) -> &[Item] {
@@ -425,14 +426,14 @@ fn eight(memory: &vm::memory::GuestMemory, address: GuestAddr) -> [u8; 8] {
 }
 
 /// A target between two steps, as the environment of an expression.
-struct OnTarget<'a, T> {
+struct TargetContext<'a, T> {
     target: &'a T,
     items: &'a [Item],
     /// The target did not answer.
     has_failed: Cell<bool>,
 }
 
-impl<T: Target> ItemReader for OnTarget<'_, T> {
+impl<T: Target> ItemReader for TargetContext<'_, T> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
         let mut bytes = [0; 8];
         if self.target.read(address, &mut bytes).is_err() {
@@ -447,12 +448,12 @@ impl<T: Target> ItemReader for OnTarget<'_, T> {
 }
 
 /// A recorded board, as the environment of an expression.
-struct InView<'a> {
+struct ViewContext<'a> {
     view: &'a View<'a>,
     items: &'a [Item],
 }
 
-impl ItemReader for InView<'_> {
+impl ItemReader for ViewContext<'_> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
         eight(self.view.memory, address)
     }

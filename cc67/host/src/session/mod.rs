@@ -85,10 +85,10 @@ mod until;
 pub use crate::setup::Setup;
 pub use crate::target::EXCHANGE;
 pub use crate::user_program::UserProgram;
-pub use attendant::{Attendant, Idle};
+pub use attendant::{Attendant, IdleWork};
 pub use by_hand::{Recording, by_hand};
 pub use control::{End, Interrupter};
-pub use ending::{Ending, EndingAxis, EndingThread};
+pub use ending::{AxisReport, EndReport, ThreadReport};
 pub use expression::{Watch, WatchError, expressions, quantities, with_user_data};
 pub use journal::Input;
 pub use setup::resolve;
@@ -111,7 +111,7 @@ use vm::thread::ThreadState;
 
 use crate::HostError;
 use crate::capability::{Capability, Unsupported};
-use crate::target::{AnyTarget, BootedTarget, Connected, Target};
+use crate::target::{AnyTarget, BootedTarget, ConnectedTarget, Target};
 use journal::Journal;
 use signals::Signals;
 
@@ -337,7 +337,7 @@ pub(crate) fn ticks(seconds: f64) -> u64 {
     (seconds / kmotiondef::limits::TIMEBASE).round() as u64
 }
 
-impl<T: Connected + 'static> Session<T> {
+impl<T: ConnectedTarget + 'static> Session<T> {
     /// Converts a session of a connected controller to one of any target.
     #[must_use]
     pub fn on_any(self) -> Session<AnyTarget> {

@@ -23,7 +23,7 @@ pub enum Until {
 
 /// The events of a step that matter for conditions.
 #[derive(Debug, Default)]
-pub(super) struct Heard {
+pub(super) struct StepEvents {
     lines: Vec<Vec<u8>>,
     is_trapped: bool,
 }
@@ -39,7 +39,7 @@ impl Until {
     }
 
     /// Notes an event.
-    pub(super) fn hear(&self, event: &Event, heard: &mut Heard) {
+    pub(super) fn hear(&self, event: &Event, heard: &mut StepEvents) {
         match &event.kind {
             EventKind::ConsoleLine(line) if self.listens() => heard.lines.push(line.clone()),
             EventKind::Trap(_) => heard.is_trapped = true,
@@ -57,7 +57,7 @@ impl Until {
     }
 
     /// Returns whether it is met.
-    pub(super) fn is_met<T: Target>(&self, session: &Session<T>, heard: &Heard) -> bool {
+    pub(super) fn is_met<T: Target>(&self, session: &Session<T>, heard: &StepEvents) -> bool {
         match self {
             Self::True(watch) => session.value(watch) != 0.0,
             Self::Active(thread, is_active) => session.thread(*thread).is_active() == *is_active,

@@ -4,12 +4,12 @@ use std::fmt::Debug;
 
 use kmotiondef::{Axes, AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
-use runtime::standing::{StandingAxis, StandingThread};
+use runtime::standing::{UnfinishedThread, UsedAxis};
 use runtime::stimulus::Stimulus;
 use runtime::trace::{Item, Quantity, TraceRequest};
 use runtime::{Board, OpenBox};
 use vm::engine::{AccessRange, CallEnd, ContextId, FrameView, Hold};
-use vm::scheduler::{ThreadSet, Turn};
+use vm::scheduler::{SliceOwner, ThreadSet};
 use vm::thread::ThreadState;
 
 use super::{BootedTarget, EventSink, Target, TargetSnapshot};
@@ -25,13 +25,13 @@ pub enum AnyTarget {
     /// A firmware file.
     Booted(Box<BootedTarget>),
     /// A connected controller.
-    Connected(Box<dyn Connected>),
+    Connected(Box<dyn ConnectedTarget>),
 }
 
 /// A target without snapshots, such as a connected controller.
-pub trait Connected: Target<Snapshot = NoSnapshot> + Debug + Send {}
+pub trait ConnectedTarget: Target<Snapshot = NoSnapshot> + Debug + Send {}
 
-impl<T: Target<Snapshot = NoSnapshot> + Debug + Send> Connected for T {}
+impl<T: Target<Snapshot = NoSnapshot> + Debug + Send> ConnectedTarget for T {}
 
 /// The state of a target that has no snapshots: there is none.
 #[derive(Clone, Copy, Debug)]
@@ -121,7 +121,7 @@ impl Target for AnyTarget {
         fn tick(&self) -> Ticks;
         fn now(&self) -> Cycles;
         fn has_ended(&self) -> bool;
-        fn turn(&self) -> Turn;
+        fn turn(&self) -> SliceOwner;
         fn debug(&self, thread: ThreadId) -> Option<&DebugInfo>;
         fn thread(&self, thread: ThreadId) -> &ThreadState;
         fn active(&self) -> ThreadSet;
@@ -130,8 +130,8 @@ impl Target for AnyTarget {
         fn stack_used(&self, thread: ThreadId) -> Option<u32>;
         fn firmware_function(&self, address: CodeAddr) -> Option<String>;
         fn runs_processor_code(&self, thread: ThreadId) -> Option<bool>;
-        fn standing_threads(&self) -> Vec<StandingThread>;
-        fn standing_axes(&self) -> Vec<StandingAxis>;
+        fn standing_threads(&self) -> Vec<UnfinishedThread>;
+        fn standing_axes(&self) -> Vec<UsedAxis>;
         fn threads_that_ran(&self) -> Vec<ThreadId>;
         fn contended_cell(&self) -> Option<(ThreadId, ThreadId, String)>;
         fn moving(&self) -> Vec<AxisId>;

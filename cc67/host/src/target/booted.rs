@@ -26,18 +26,19 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use boot::{
-    BootedBoard, BootedSnapshot, FirmwareFile, Halted, ProcessorState, ProgramPacket, Ran, Sent, SentLine,
+    BootedBoard, BootedSnapshot, FirmwareFile, HaltError, ProcessorState, ProgramPacket, RunOutcome,
+    SentKind, SentLine,
 };
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::stimulus::Stimulus;
-use runtime::surroundings::{Asked, Surroundings};
+use runtime::surroundings::{StimulusRequest, Surroundings};
 use runtime::trace::{Item, TraceRequest};
 use runtime::{Event, EventKind};
 use vm::dsp::packet_text;
 use vm::engine::{ContextId, FrameView, Hold};
 use vm::firmware::ExecutedPacket;
-use vm::scheduler::Turn;
+use vm::scheduler::SliceOwner;
 use vm::thread::{Progress, ThreadState};
 
 use super::model::{is_mapped, read};
@@ -45,8 +46,8 @@ use super::{CONSOLE_LINES, EventSink, Target, TargetSnapshot};
 use crate::capability::Capability;
 use crate::error::SnapshotError;
 use crate::{HostError, UserProgram};
-use attached::Attached;
-use debug::Debugging;
+use attached::DelayedSurroundings;
+use debug::DebugState;
 use observers::Observers;
 
 /// Cycles per tick, and per second.
@@ -99,7 +100,7 @@ struct State {
     loaded: [Option<Arc<LoadedProgram>>; ThreadId::MAX as usize],
     threads: [ThreadState; ThreadId::MAX as usize],
     /// The thread that had the last tick.
-    turn: Turn,
+    turn: SliceOwner,
     /// Lines that programs sent before time began.
     early: Vec<SentLine>,
     /// The times without motion and output, and without an answer to a command.
@@ -114,13 +115,13 @@ struct State {
     has_told_loss: bool,
     /// The present tick, once the firmware has crashed and nothing happens any more.
     halted: Option<Ticks>,
-    debugging: Debugging,
+    debugging: DebugState,
 }
 
 /// A board that runs a firmware file.
 #[derive(Debug)]
 pub struct BootedTarget {
-    board: BootedBoard<Attached>,
+    board: BootedBoard<DelayedSurroundings>,
     /// The cycle since power-up at which board time is 0.
     origin: u64,
     offered: Vec<UserProgram>,
@@ -131,7 +132,7 @@ pub struct BootedTarget {
 /// A [`BootedTarget`] as it was at an instant.
 #[derive(Debug)]
 pub struct BootedTargetSnapshot {
-    board: BootedSnapshot<Attached>,
+    board: BootedSnapshot<DelayedSurroundings>,
     tick: Ticks,
     state: State,
 }
@@ -193,9 +194,9 @@ impl BootedTarget {
         let end = self.origin + (self.tick().get() + u64::from(self.state.debugging.held().is_none())) * TICK;
         self.state.debugging.go_on();
         match self.run_to(end) {
-            Ok(Ran::ToStop) => self.note_threads(),
-            Ok(Ran::Through) => self.complete_tick(events),
-            Err(Halted::Crashed(crash)) => {
+            Ok(RunOutcome::ToStop) => self.note_threads(),
+            Ok(RunOutcome::Through) => self.complete_tick(events),
+            Err(HaltError::Crashed(crash)) => {
                 self.complete_tick(events);
                 let at = self.now();
                 self.state.halted = Some(Ticks::new((self.board.cycle() - self.origin) / TICK));
@@ -212,8 +213,8 @@ impl BootedTarget {
         let has_sent = !lines.is_empty();
         for line in lines {
             let at = self.since_begin(line.cycle);
-            let is_lost = self.state.is_deaf && line.kind == Sent::Console;
-            let is_console = matches!(line.kind, Sent::Console | Sent::Request);
+            let is_lost = self.state.is_deaf && line.kind == SentKind::Console;
+            let is_console = matches!(line.kind, SentKind::Console | SentKind::Request);
             match self.surroundings() {
                 _ if is_lost => self.report_loss(at, events),
                 // The simulated PC takes lines for files, and shows the others.
@@ -258,8 +259,8 @@ impl BootedTarget {
     fn serve(&mut self, events: EventSink<'_>) {
         for one in self.surroundings().map(Surroundings::take_asked).unwrap_or_default() {
             match one {
-                Asked::Send(bytes) => self.board.send(&bytes),
-                Asked::Run(thread, name) => {
+                StimulusRequest::Send(bytes) => self.board.send(&bytes),
+                StimulusRequest::Run(thread, name) => {
                     let offered =
                         self.offered.iter().find(|known| known.thread == thread && *known.name() == *name);
                     if let Some(program) = offered.cloned()
@@ -287,7 +288,7 @@ impl BootedTarget {
             }
         }
         let number = self.board.processor_state().thread.and_then(|thread| i32::try_from(thread).ok());
-        self.state.turn = number.and_then(ThreadId::new).map_or(Turn::Primary, Turn::User);
+        self.state.turn = number.and_then(ThreadId::new).map_or(SliceOwner::Primary, SliceOwner::User);
     }
 
     /// Updates the periods without events after a tick.
@@ -323,10 +324,10 @@ impl BootedTarget {
 /// A line of a firmware without surroundings.
 fn event_of(line: SentLine) -> EventKind {
     match line.kind {
-        Sent::Console => EventKind::ConsoleLine(line.text),
-        Sent::Reply => EventKind::Reply(line.text),
-        Sent::Aborted => EventKind::Aborted,
-        Sent::Request => {
+        SentKind::Console => EventKind::ConsoleLine(line.text),
+        SentKind::Reply => EventKind::Reply(line.text),
+        SentKind::Aborted => EventKind::Aborted,
+        SentKind::Request => {
             let text = String::from_utf8_lossy(line.text.get(1..).unwrap_or_default()).into_owned();
             EventKind::Host(format!(
                 "the program asks for the file `{text}`; files are not served with this firmware yet"
@@ -389,7 +390,7 @@ impl Target for BootedTarget {
         self.state.halted.is_some() || self.state.rest.is_over(self.board.looks())
     }
 
-    fn turn(&self) -> Turn {
+    fn turn(&self) -> SliceOwner {
         self.state.turn
     }
 

@@ -2,14 +2,14 @@
 
 use kmotiondef::{Axes, AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
-use runtime::standing::{StandingAxis, StandingThread};
+use runtime::standing::{UnfinishedThread, UsedAxis};
 use runtime::stimulus::Stimulus;
 use runtime::trace::{Item, TraceRequest};
 use runtime::{Board, BoardSnapshot, OpenBox};
 use vm::engine::{AccessRange, CallEnd, ContextId, Engine, FrameView, Hold};
-use vm::loaded::Loaded;
+use vm::loaded::LoadedCode;
 use vm::memory::GuestMemory;
-use vm::scheduler::{ThreadSet, Turn};
+use vm::scheduler::{SliceOwner, ThreadSet};
 use vm::thread::ThreadState;
 use vm::trap::Access;
 
@@ -99,7 +99,7 @@ impl<E: Engine> Target for Board<E> {
         self.has_ended()
     }
 
-    fn turn(&self) -> Turn {
+    fn turn(&self) -> SliceOwner {
         self.machine().turn()
     }
 
@@ -141,14 +141,14 @@ impl<E: Engine> Target for Board<E> {
     }
 
     fn runs_processor_code(&self, thread: ThreadId) -> Option<bool> {
-        self.machine().loaded(thread).map(|loaded| matches!(loaded, Loaded::Image(_)))
+        self.machine().loaded(thread).map(|loaded| matches!(loaded, LoadedCode::Image(_)))
     }
 
-    fn standing_threads(&self) -> Vec<StandingThread> {
+    fn standing_threads(&self) -> Vec<UnfinishedThread> {
         self.standing_threads()
     }
 
-    fn standing_axes(&self) -> Vec<StandingAxis> {
+    fn standing_axes(&self) -> Vec<UsedAxis> {
         self.standing_axes()
     }
 

@@ -5,7 +5,7 @@ use kmotiondef::ThreadId;
 use serde_json::{Value, json};
 
 use super::jogs::Jogs;
-use super::{ViewState, Voice};
+use super::{EntrySource, ViewState};
 use crate::TimeControl;
 use crate::control::is_harmless;
 use crate::request::PageRequest;
@@ -61,7 +61,7 @@ impl<T: Target> ViewState<T> {
     pub(super) fn control(&mut self, session: &mut Session<T>, is_on: bool) {
         self.access.is_controlled = is_on;
         let said = if is_on { "control is on: pages can move the machine" } else { "control is off" };
-        self.log.say(session.tick(), Voice::Remark, said.to_owned());
+        self.log.say(session.tick(), EntrySource::Remark, said.to_owned());
         self.broadcast(&self.access.message());
         self.sample_on_controller(session);
     }
@@ -78,7 +78,7 @@ impl<T: Target> ViewState<T> {
             Ok(None) => return,
             Err(error) => format!("the scope has 20 samples a second: {error}"),
         };
-        self.log.say(session.tick(), Voice::Remark, said);
+        self.log.say(session.tick(), EntrySource::Remark, said);
     }
 
     /// Stops all threads and disables all axes.

@@ -31,7 +31,7 @@ const PINS: u16 = 64;
 
 /// The part of a frame's data that is not the board's state.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Moment {
+pub(super) struct FrameClock {
     /// True if the clock runs.
     pub(super) is_running: bool,
     /// True if the board is shown at an earlier time from which it would continue.
@@ -45,7 +45,7 @@ pub(super) struct Moment {
 /// Creates a frame of a board, with the samples from a row on; returns the frame and the row after these samples.
 pub(super) fn frame<T: Target>(
     session: &Session<T>,
-    moment: Moment,
+    moment: FrameClock,
     samples: &Samples,
     next_row: u64,
 ) -> (Vec<u8>, u64) {

@@ -10,7 +10,7 @@ use runtime::machine_file::{Condition, Model};
 use serde_json::{Value, json};
 
 use crate::Show;
-use crate::names::{self, Used};
+use crate::names::{self, UsedBit};
 
 /// The board's LEDs.
 const LAMPS: [i32; 2] = [46, 47];
@@ -83,7 +83,7 @@ fn bits(show: &Show) -> Vec<Value> {
         files(show).iter().filter_map(|path| Some(names::decoded(&fs::read(path).ok()?))).collect();
     let mut used = names::bits_of(&texts);
     let mut note = |bit: Bit, is_input: bool| {
-        let entry: &mut Used = used.entry(bit).or_default();
+        let entry: &mut UsedBit = used.entry(bit).or_default();
         entry.is_read |= is_input;
         entry.is_written |= !is_input;
     };
@@ -97,7 +97,7 @@ fn bits(show: &Show) -> Vec<Value> {
     }
     names::name_groups(&mut used);
     let places = places(show);
-    let row = |(bit, used): (Bit, Used)| {
+    let row = |(bit, used): (Bit, UsedBit)| {
         let range = show.machine.file.board.bit_range(bit);
         let is_input = match range.map(|range| range.direction) {
             Some(BitDirection::Input) => true,

@@ -9,7 +9,7 @@ use kmotiondef::limits::TIMEBASE;
 use serde_json::json;
 
 use super::ViewState;
-use super::keep::{Kept, Run};
+use super::keep::{Run, TestFiles};
 use crate::hub::PageId;
 
 impl<T: Target> ViewState<T> {
@@ -98,7 +98,7 @@ impl<T: Target> ViewState<T> {
         let seconds = tick.get() as f64 * TIMEBASE;
         let console = self.log.console(tick);
         let run = Run { stimulus: session.recording().text(), seconds, console };
-        let kept = Kept::new(name, &self.show, run)?;
+        let kept = TestFiles::new(name, &self.show, run)?;
         if let Some(page) = self.pages.get(&id) {
             kept.write(Arc::clone(&page.mailbox));
         }

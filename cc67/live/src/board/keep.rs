@@ -19,7 +19,7 @@ const LONGEST: usize = 64;
 
 /// A test to be written.
 #[derive(Debug)]
-pub(super) struct Kept {
+pub(super) struct TestFiles {
     /// The path, without an extension.
     path: PathBuf,
     source: String,
@@ -40,7 +40,7 @@ pub(super) struct Run<'a> {
     pub(super) console: Option<String>,
 }
 
-impl Kept {
+impl TestFiles {
     /// Creates a test with this name in the folder of the first program.
     pub(super) fn new(name: &str, show: &Show, run: Run<'_>) -> Result<Self, String> {
         let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';

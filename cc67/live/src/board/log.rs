@@ -15,7 +15,7 @@ const KEPT: usize = 5000;
 /// The source of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum Voice {
+pub(super) enum EntrySource {
     /// Console output of a program.
     Console,
     /// A reply of the board.
@@ -43,7 +43,7 @@ pub(super) struct LogEntry {
     tick: u64,
     /// The time in seconds, to a fraction of a tick.
     seconds: f64,
-    voice: Voice,
+    voice: EntrySource,
     text: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
@@ -65,7 +65,7 @@ pub(super) struct Log {
 
 impl Log {
     /// Adds a user's message.
-    pub(super) fn say(&mut self, tick: Ticks, voice: Voice, text: String) {
+    pub(super) fn say(&mut self, tick: Ticks, voice: EntrySource, text: String) {
         let seconds = tick.get() as f64 * kmotiondef::limits::TIMEBASE;
         self.add(LogEntry { tick: tick.get(), seconds, voice, text, file: None, line: None, accesses: None });
     }
@@ -74,12 +74,12 @@ impl Log {
     pub(super) fn note<T: Target>(&mut self, session: &Session<T>, event: &Event) {
         let tick = u64::try_from(event.at.get() / Cycles::PER_TICK.get()).unwrap_or_default();
         let (voice, text, place) = match &event.kind {
-            EventKind::ConsoleLine(line) => (Voice::Console, text(line), None),
-            EventKind::Reply(line) => (Voice::Reply, text(line), None),
-            EventKind::Trap(trap) => (Voice::Trap, words(session, event), Some(trap.at)),
-            EventKind::Remark(remark) => (Voice::Remark, words(session, event), remark.place),
+            EventKind::ConsoleLine(line) => (EntrySource::Console, text(line), None),
+            EventKind::Reply(line) => (EntrySource::Reply, text(line), None),
+            EventKind::Trap(trap) => (EntrySource::Trap, words(session, event), Some(trap.at)),
+            EventKind::Remark(remark) => (EntrySource::Remark, words(session, event), remark.place),
             EventKind::Host(_) | EventKind::Unmet(_) | EventKind::Halted(_) => {
-                (Voice::Remark, words(session, event), None)
+                (EntrySource::Remark, words(session, event), None)
             }
             EventKind::Echo(_)
             | EventKind::Aborted
@@ -88,7 +88,7 @@ impl Log {
             | EventKind::UartSent(_) => return,
         };
         // Minor events have no text.
-        if text.is_empty() && !matches!(voice, Voice::Console | Voice::Reply) {
+        if text.is_empty() && !matches!(voice, EntrySource::Console | EntrySource::Reply) {
             return;
         }
         let place = place.and_then(|place: CodeAddr| session.source(place));
@@ -139,7 +139,7 @@ impl Log {
 
     /// Returns the console output until a tick, as `cc67 run --time` shows it; `None` if some of it is not kept.
     pub(super) fn console(&self, until: Ticks) -> Option<String> {
-        let is_printed = |entry: &&LogEntry| entry.voice == Voice::Console && entry.tick <= until.get();
+        let is_printed = |entry: &&LogEntry| entry.voice == EntrySource::Console && entry.tick <= until.get();
         let printed = self.entries.iter().filter(is_printed);
         let lines = printed.map(|entry| format!("{:.6} {}\n", entry.seconds, entry.text)).collect();
         (self.entries.len() < KEPT).then_some(lines)

@@ -5,7 +5,7 @@ use std::fs;
 use cc67_host::{Session, Target};
 use serde_json::{Value, json};
 
-use super::log::Voice;
+use super::log::EntrySource;
 use super::{ViewState, saved};
 use crate::hub::Hub;
 
@@ -46,7 +46,7 @@ impl<T: Target> ViewState<T> {
             Err(text) => MachineState::Wrong(text),
         };
         if let Some(text) = self.machine_text() {
-            self.log.say(session.tick(), Voice::Remark, text);
+            self.log.say(session.tick(), EntrySource::Remark, text);
         }
         self.broadcast(&self.machine());
     }

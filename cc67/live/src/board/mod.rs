@@ -36,18 +36,18 @@ use cc67_host::{Attendant, Capability, Session, Target, Timeline, UserProgram};
 use kmotiondef::{ThreadId, Ticks};
 use runtime::{Event, OpenBox};
 use serde_json::{Value, json};
-use vm::scheduler::Turn;
+use vm::scheduler::SliceOwner;
 
 use crate::hub::{Hub, Incoming, Mailbox, PageId};
 use crate::request::PageRequest;
 use crate::{Keeper, Show, TimeControl};
 use clock::{Clock, now};
 use connected::PageAccess;
-use log::{Log, LogEntry, Voice};
+use log::{EntrySource, Log, LogEntry};
 use programs::Programs;
 use samples::Samples;
 use threads::ThreadRow;
-use turns::Turns;
+use turns::SliceHistory;
 
 /// The interval at which the board is run up to the clock's time.
 const BEAT: Duration = Duration::from_millis(8);
@@ -81,7 +81,7 @@ pub enum ShowEnd {
 pub(crate) fn run<T: Target>(
     session: &mut Session<T>,
     show: Show,
-    company: Company<T>,
+    company: BoardUsers<T>,
     check: &mut dyn FnMut() -> Result<(), String>,
     (hub, requests): (&Arc<Hub>, &Receiver<Incoming>),
 ) -> ShowEnd {
@@ -152,7 +152,7 @@ struct Page {
 
 /// The last messages to pages.
 #[derive(Debug)]
-struct Told {
+struct LastMessages {
     /// The threads, and the time of the message.
     threads: Vec<ThreadRow>,
     at: Instant,
@@ -172,20 +172,20 @@ struct ViewState<T: Target> {
     log: Log,
     pages: BTreeMap<PageId, Page>,
     /// The last messages to pages.
-    told: Told,
+    told: LastMessages,
     /// The thread that had the processor in each of the last ticks.
-    turns: Turns,
+    turns: SliceHistory,
     /// Requests to the owner of the session.
     owner_requests: OwnerRequests,
     /// The other users of the board.
-    company: Company<T>,
+    company: BoardUsers<T>,
     /// The jogs of pages, and their rights over a connected controller.
     access: PageAccess,
 }
 
 /// The users of a board besides its pages.
 #[derive(Debug)]
-pub struct Company<T: Target> {
+pub struct BoardUsers<T: Target> {
     /// A debugger or similar, which can stop the board.
     pub attendant: Option<Box<dyn Attendant<T>>>,
     /// The keeper of its flash, which sees events before pages do.
@@ -201,7 +201,11 @@ impl<T: Target> ViewState<T> {
         let mut log = Log::default();
         samples.follow(session, list, clock.speed());
         for wrong in samples.wrong() {
-            log.say(session.tick(), Voice::Remark, format!("the scope: {}: {}", wrong.name, wrong.text));
+            log.say(
+                session.tick(),
+                EntrySource::Remark,
+                format!("the scope: {}: {}", wrong.name, wrong.text),
+            );
         }
         if show.time == TimeControl::Full && session.can(Capability::Surroundings) {
             // Boxes are answered by pages; the statement is recorded, so that a test waits as well.
@@ -221,10 +225,10 @@ impl<T: Target> ViewState<T> {
             samples,
             log,
             pages: BTreeMap::new(),
-            told: Told { threads: Vec::new(), at: now(), open_box: None },
-            turns: Turns::default(),
+            told: LastMessages { threads: Vec::new(), at: now(), open_box: None },
+            turns: SliceHistory::default(),
             owner_requests: OwnerRequests::default(),
-            company: Company { attendant: None, keeper: None },
+            company: BoardUsers { attendant: None, keeper: None },
             access: PageAccess::default(),
         }
     }
@@ -335,7 +339,7 @@ impl<T: Target> ViewState<T> {
                 self.load(session, programs);
                 self.broadcast(&self.programs.message());
                 if let Some(refusal) = self.programs.refusal() {
-                    self.log.say(session.tick(), Voice::Remark, refusal.clone());
+                    self.log.say(session.tick(), EntrySource::Remark, refusal.clone());
                     return Err(refusal);
                 }
             }
@@ -383,7 +387,7 @@ impl<T: Target> ViewState<T> {
 
     /// Sends script commands, as the PC does.
     fn command(&mut self, session: &mut Session<T>, line: &str) -> Result<(), String> {
-        self.log.say(session.tick(), Voice::Command, line.to_owned());
+        self.log.say(session.tick(), EntrySource::Command, line.to_owned());
         if self.is_real() {
             let mut events = Vec::new();
             session.exchange(line.as_bytes(), &mut |event| events.push(event));
@@ -434,7 +438,7 @@ impl<T: Target> ViewState<T> {
                 Err(error) => error.to_string(),
             };
             self.keep(session);
-            self.log.say(session.tick(), Voice::Remark, said);
+            self.log.say(session.tick(), EntrySource::Remark, said);
         }
     }
 
@@ -479,7 +483,7 @@ impl<T: Target> ViewState<T> {
     fn slice(&mut self, session: &mut Session<T>) {
         for _ in 0..ROTATION {
             self.run_to(session, session.tick().next());
-            if let Turn::User(_) = session.target().turn() {
+            if let SliceOwner::User(_) = session.target().turn() {
                 return;
             }
         }

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::machine::MachineState;
 use super::saved::{self, Watch};
-use crate::hub::{Compiled, Hub};
+use crate::hub::{CompileResult, Hub};
 use crate::{Program, Show};
 
 /// The programs.
@@ -52,7 +52,7 @@ impl Programs {
     }
 
     /// Notes that a program was saved; returns the programs to be loaded now, if that is allowed.
-    pub(super) fn saved(&mut self, compiled: Compiled, may_load: bool) -> Vec<UserProgram> {
+    pub(super) fn saved(&mut self, compiled: CompileResult, may_load: bool) -> Vec<UserProgram> {
         self.note(compiled);
         if self.reloads && may_load { self.take() } else { Vec::new() }
     }
@@ -78,7 +78,7 @@ impl Programs {
         self.loaded.values().cloned().collect()
     }
 
-    fn note(&mut self, Compiled { program, result }: Compiled) {
+    fn note(&mut self, CompileResult { program, result }: CompileResult) {
         self.waiting.remove(&program.thread);
         self.wrong.remove(&program.thread);
         match result {

@@ -10,7 +10,7 @@ use std::time::{Duration, SystemTime};
 use cc67_host::{CompileMessage, HostError, Options, UserProgram};
 use runtime::MachineFile;
 
-use crate::hub::{Compiled, Hub, Incoming};
+use crate::hub::{CompileResult, Hub, Incoming};
 use crate::{Program, names};
 
 /// The interval at which files are checked.
@@ -22,7 +22,7 @@ const AWAY: Duration = Duration::from_millis(100);
 pub(super) type Watch = Arc<()>;
 
 /// Compiles a program.
-pub(super) fn compile(program: &Program, options: &Options) -> Compiled {
+pub(super) fn compile(program: &Program, options: &Options) -> CompileResult {
     let compiled = match program.is_image {
         true => UserProgram::from_image(&program.path, program.thread),
         false => UserProgram::compile(&program.path, program.thread, options),
@@ -31,7 +31,7 @@ pub(super) fn compile(program: &Program, options: &Options) -> Compiled {
         HostError::Compile(error) => error.messages().to_vec(),
         other => vec![CompileMessage::new(other.to_string())],
     });
-    Compiled { program: program.clone(), result }
+    CompileResult { program: program.clone(), result }
 }
 
 /// Watches the files of some programs from now on, and sends the results for those that are saved or deleted.

@@ -7,7 +7,7 @@ use cc67_host::{Session, Target};
 use serde_json::{Value, json};
 
 use super::clock::now;
-use super::frame::{self, Moment};
+use super::frame::{self, FrameClock};
 use super::{BEAT, THREADS, ViewState, asks, log_message, threads};
 use crate::hub::PageId;
 
@@ -43,7 +43,7 @@ impl<T: Target> ViewState<T> {
     /// Sends a frame to each page for which one is due and that has taken the last one.
     pub(super) fn send_frames(&mut self, session: &Session<T>) {
         let tick = session.tick();
-        let moment = Moment {
+        let moment = FrameClock {
             is_running: self.clock.is_running(),
             is_past: self.is_past(session),
             end: self.end(session),

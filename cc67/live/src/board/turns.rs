@@ -33,13 +33,13 @@ impl ShownSlice {
 
 /// The slices of the last ticks, without gaps.
 #[derive(Debug, Default)]
-pub(super) struct Turns {
+pub(super) struct SliceHistory {
     slices: VecDeque<ShownSlice>,
     /// The tick of the last slice.
     last: Ticks,
 }
 
-impl Turns {
+impl SliceHistory {
     /// Runs a session to a tick. If a page is watching, or the distance is short, the end of the run is executed tick
     /// by tick.
     pub(super) fn advance<T: Target>(

@@ -16,7 +16,7 @@ use cc67_host::seats::{Closer, Seat, Seats};
 use cc67_host::{Session, Target};
 
 use crate::Show;
-use crate::board::{self, Company, LiveView, ShowEnd};
+use crate::board::{self, BoardUsers, LiveView, ShowEnd};
 use crate::hub::{Hub, Incoming};
 use gate::Gate;
 use http::{Head, HttpAnswer};
@@ -97,7 +97,7 @@ impl Server {
         &self,
         session: &mut Session<T>,
         show: Show,
-        company: Company<T>,
+        company: BoardUsers<T>,
         check: &mut dyn FnMut() -> Result<(), String>,
     ) -> ShowEnd {
         board::run(session, show, company, check, (&self.hub, &self.requests))

@@ -53,14 +53,14 @@ struct Connection<'a> {
 }
 
 /// The reason why a connection ends.
-enum Gone {
+enum ConnectionEnd {
     /// It was closed or lost.
     Closed,
     /// The client violated the protocol.
     Broken(String),
 }
 
-impl From<Error> for Gone {
+impl From<Error> for ConnectionEnd {
     fn from(error: Error) -> Self {
         match error {
             Error::Protocol(_) | Error::Capacity(_) | Error::Utf8(_) => Self::Broken(error.to_string()),
@@ -70,7 +70,7 @@ impl From<Error> for Gone {
 }
 
 impl Connection<'_> {
-    fn run(&mut self) -> Result<(), Gone> {
+    fn run(&mut self) -> Result<(), ConnectionEnd> {
         while !self.mailbox.is_closed() {
             self.receive()?;
             while let Some(outgoing) = self.mailbox.take() {
@@ -86,7 +86,7 @@ impl Connection<'_> {
     }
 
     /// Handles incoming messages.
-    fn receive(&mut self) -> Result<(), Gone> {
+    fn receive(&mut self) -> Result<(), ConnectionEnd> {
         for _ in 0..MESSAGES_AT_ONCE {
             let message = match self.socket.read() {
                 Ok(message) => message,
@@ -96,14 +96,14 @@ impl Connection<'_> {
             match message {
                 Message::Text(text) => {
                     self.seat.hear();
-                    let request =
-                        PageRequest::parse(&text).map_err(|error| Gone::Broken(error.to_string()))?;
+                    let request = PageRequest::parse(&text)
+                        .map_err(|error| ConnectionEnd::Broken(error.to_string()))?;
                     if !self.hub.hand_in(Incoming::Ask(self.page, request)) {
-                        return Err(Gone::Closed);
+                        return Err(ConnectionEnd::Closed);
                     }
                 }
                 Message::Binary(_) => {
-                    return Err(Gone::Broken("binary messages only go to pages".to_owned()));
+                    return Err(ConnectionEnd::Broken("binary messages only go to pages".to_owned()));
                 }
                 Message::Ping(_) | Message::Pong(_) | Message::Close(_) | Message::Frame(_) => {}
             }
@@ -112,8 +112,8 @@ impl Connection<'_> {
     }
 
     /// Closes a connection, and reports a violation of the protocol.
-    fn leave(&mut self, why: &Gone) {
-        if let Gone::Broken(what) = why {
+    fn leave(&mut self, why: &ConnectionEnd) {
+        if let ConnectionEnd::Broken(what) = why {
             self.hub.log("a page sent what is not a request and was disconnected", what);
         }
         // An error means that the connection is already closed.

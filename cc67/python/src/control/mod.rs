@@ -24,7 +24,7 @@ const STEPS: usize = 4000;
 const TICKS: u64 = 4000;
 
 /// The result of a portion of a run.
-pub(crate) struct Portion {
+pub(crate) struct PortionResult {
     /// True if the run is over.
     pub(crate) is_over: bool,
     /// True if the run's condition is met, or all programs have ended.
@@ -34,7 +34,7 @@ pub(crate) struct Portion {
 }
 
 /// The reason why a value is not stored.
-pub(crate) enum Unwritten {
+pub(crate) enum StoreError {
     /// The expression is wrong.
     Wrong(WatchError),
     /// The value does not fit in its type.
@@ -43,7 +43,7 @@ pub(crate) enum Unwritten {
     Refused(String),
 }
 
-impl From<WatchError> for Unwritten {
+impl From<WatchError> for StoreError {
     fn from(error: WatchError) -> Self {
         Self::Wrong(error)
     }
@@ -54,15 +54,15 @@ pub(crate) trait Control: 'static {
     /// Number of the last tick that is over.
     fn tick(&mut self) -> u64;
     /// A portion of a run to the end of a tick.
-    fn advance(&mut self, limit: u64) -> Portion;
+    fn advance(&mut self, limit: u64) -> PortionResult;
     /// A portion of a run until all has ended.
-    fn run(&mut self, limit: u64) -> Portion;
+    fn run(&mut self, limit: u64) -> PortionResult;
     /// A portion of a run until a condition is met.
-    fn run_until(&mut self, condition: &Until, limit: u64) -> Portion;
+    fn run_until(&mut self, condition: &Until, limit: u64) -> PortionResult;
     /// Ends the run: held output is flushed, expectations are evaluated.
-    fn finish(&mut self) -> Portion;
+    fn finish(&mut self) -> PortionResult;
     /// Runs to the end of the next slice of a thread.
-    fn step_thread(&mut self, thread: ThreadId, limit: u64) -> Portion;
+    fn step_thread(&mut self, thread: ThreadId, limit: u64) -> PortionResult;
     /// Reports whether nothing is active and nothing is under way.
     fn has_ended(&mut self) -> bool;
     /// Sends a line, lets pass the time that it takes, and returns the lines of the reply.
@@ -80,11 +80,11 @@ pub(crate) trait Control: 'static {
     /// The value of an item or an expression.
     fn read(&mut self, text: &str) -> Result<f64, WatchError>;
     /// Stores a value.
-    fn write(&mut self, text: &str, value: f64) -> Result<(), Unwritten>;
+    fn write(&mut self, text: &str, value: f64) -> Result<(), StoreError>;
     /// A field of an axis, by its name in C.
     fn field(&mut self, axis: usize, name: &str) -> Result<Option<f64>, HostError>;
     /// Stores a value in a field of an axis; `false` for another name.
-    fn set_field(&mut self, axis: usize, name: &str, value: f64) -> Result<bool, Unwritten>;
+    fn set_field(&mut self, axis: usize, name: &str, value: f64) -> Result<bool, StoreError>;
     /// An element of `persist.UserData`.
     fn user_data(&mut self, index: usize) -> Option<i32>;
     /// Stores an element of `persist.UserData`.
@@ -108,7 +108,7 @@ pub(crate) trait Control: 'static {
     /// Begins a trace.
     fn begin_trace(&mut self, items: &[String], every: u64, samples: usize) -> Result<(), WatchError>;
     /// A portion of the trace.
-    fn trace(&mut self) -> Portion;
+    fn trace(&mut self) -> PortionResult;
     /// The trace as far as it is.
     fn end_trace(&mut self) -> Option<Columns>;
     /// The output of the board since power-up.
@@ -127,16 +127,16 @@ pub(crate) struct LoggedSession<T: Target> {
     recorder: Option<Recorder>,
     snapshots: BTreeMap<u64, (Snapshot<T>, Log)>,
     /// Expressions that were read before, with the programs that are loaded now.
-    watches: Kept,
+    watches: WatchCache,
     /// Places that were written before, with these programs.
-    places: Kept,
+    places: WatchCache,
 }
 
 /// Expressions that were compiled before, by their text.
 #[derive(Default)]
-struct Kept(BTreeMap<String, Watch>);
+struct WatchCache(BTreeMap<String, Watch>);
 
-impl Kept {
+impl WatchCache {
     /// Most expressions that are kept.
     const MOST: usize = 1000;
 
@@ -171,15 +171,15 @@ impl<T: Target> LoggedSession<T> {
             stops_at_faults: true,
             recorder: None,
             snapshots: BTreeMap::new(),
-            watches: Kept::default(),
-            places: Kept::default(),
+            watches: WatchCache::default(),
+            places: WatchCache::default(),
         }
     }
 
     /// Forgets what was compiled in the words of other programs.
     fn forget_expressions(&mut self) {
-        self.watches = Kept::default();
-        self.places = Kept::default();
+        self.watches = WatchCache::default();
+        self.places = WatchCache::default();
     }
 
     /// Lets time pass, and takes up what the board says.
@@ -223,27 +223,27 @@ impl<T: Target> LoggedSession<T> {
     }
 
     /// Steps until `is_over` returns true or the portion is used up.
-    fn portion(&mut self, limit: Ticks, is_over: impl Fn(&Session<T>) -> bool) -> Portion {
+    fn portion(&mut self, limit: Ticks, is_over: impl Fn(&Session<T>) -> bool) -> PortionResult {
         let mut events = Vec::new();
         for _ in 0..self.steps() {
             let is_met = is_over(&self.session);
             if is_met || self.session.tick() >= limit {
-                return Portion { is_over: true, is_met, fault: None };
+                return PortionResult { is_over: true, is_met, fault: None };
             }
             self.session.step(limit, &mut |event| events.push(event));
             // Most steps have no message.
             if !events.is_empty() || self.session.target().lost().is_some() {
                 self.hear(std::mem::take(&mut events));
                 if let Some(fault) = self.fault() {
-                    return Portion { is_over: true, is_met: false, fault: Some(fault) };
+                    return PortionResult { is_over: true, is_met: false, fault: Some(fault) };
                 }
             }
         }
-        Portion { is_over: false, is_met: false, fault: None }
+        PortionResult { is_over: false, is_met: false, fault: None }
     }
 
-    fn over(&mut self, is_met: bool) -> Portion {
-        Portion { is_over: true, is_met, fault: self.fault() }
+    fn over(&mut self, is_met: bool) -> PortionResult {
+        PortionResult { is_over: true, is_met, fault: self.fault() }
     }
 }
 
@@ -253,38 +253,38 @@ impl<T: Target + 'static> Control for LoggedSession<T> {
         self.session.tick().get()
     }
 
-    fn advance(&mut self, limit: u64) -> Portion {
+    fn advance(&mut self, limit: u64) -> PortionResult {
         self.portion(Ticks::new(limit), |_| false)
     }
 
-    fn run(&mut self, limit: u64) -> Portion {
+    fn run(&mut self, limit: u64) -> PortionResult {
         self.portion(Ticks::new(limit), Session::has_ended)
     }
 
-    fn run_until(&mut self, condition: &Until, limit: u64) -> Portion {
+    fn run_until(&mut self, condition: &Until, limit: u64) -> PortionResult {
         let stops = self.stops_at_faults;
         let either =
             Until::Any(if stops { vec![condition.clone(), Until::Trapped] } else { vec![condition.clone()] });
         let end = self.session.tick().get().saturating_add(TICKS).min(limit);
         let is_met = self.pass(|session, events| session.run_until(&either, Ticks::new(end), events));
         let fault = self.fault();
-        Portion {
+        PortionResult {
             is_over: is_met || fault.is_some() || end >= limit,
             is_met: is_met && fault.is_none(),
             fault,
         }
     }
 
-    fn finish(&mut self) -> Portion {
+    fn finish(&mut self) -> PortionResult {
         self.pass(|session, events| session.finish(events));
         self.over(true)
     }
 
-    fn step_thread(&mut self, thread: ThreadId, limit: u64) -> Portion {
+    fn step_thread(&mut self, thread: ThreadId, limit: u64) -> PortionResult {
         let end = self.session.tick().get().saturating_add(TICKS).min(limit);
         let is_met = self.pass(|session, events| session.step_thread(thread, Ticks::new(end), events));
         let fault = self.fault();
-        Portion { is_over: is_met || fault.is_some() || end >= limit, is_met, fault }
+        PortionResult { is_over: is_met || fault.is_some() || end >= limit, is_met, fault }
     }
 
     fn has_ended(&mut self) -> bool {
@@ -331,12 +331,12 @@ impl<T: Target + 'static> Control for LoggedSession<T> {
         !self.session.can(Capability::StopTime)
     }
 
-    fn write(&mut self, text: &str, value: f64) -> Result<(), Unwritten> {
+    fn write(&mut self, text: &str, value: f64) -> Result<(), StoreError> {
         let place = self.places.find(text, || self.session.place(text))?;
         if let Some((least, greatest)) = place.limits()
             && !(least..=greatest).contains(&value.trunc())
         {
-            return Err(Unwritten::TooLarge(format!(
+            return Err(StoreError::TooLarge(format!(
                 "{value} does not fit in `{text}`: {least} to {greatest}"
             )));
         }
@@ -348,12 +348,12 @@ impl<T: Target + 'static> Control for LoggedSession<T> {
         field(&self.session, axis, name)
     }
 
-    fn set_field(&mut self, axis: usize, name: &str, value: f64) -> Result<bool, Unwritten> {
+    fn set_field(&mut self, axis: usize, name: &str, value: f64) -> Result<bool, StoreError> {
         let Some(stored) = stored(axis, name, value) else { return Ok(false) };
-        let (address, bytes) = stored.map_err(Unwritten::TooLarge)?;
+        let (address, bytes) = stored.map_err(StoreError::TooLarge)?;
         let address = self.session.target().place_of(address);
         let is_stored = self.session.store(address, &bytes);
-        is_stored.map(|()| true).map_err(|error| Unwritten::Refused(error.to_string()))
+        is_stored.map(|()| true).map_err(|error| StoreError::Refused(error.to_string()))
     }
 
     fn user_data(&mut self, index: usize) -> Option<i32> {
@@ -412,9 +412,9 @@ impl<T: Target + 'static> Control for LoggedSession<T> {
         Ok(())
     }
 
-    fn trace(&mut self) -> Portion {
+    fn trace(&mut self) -> PortionResult {
         let Some(mut recorder) = self.recorder.take() else { return self.over(false) };
-        let mut portion = Portion { is_over: false, is_met: false, fault: None };
+        let mut portion = PortionResult { is_over: false, is_met: false, fault: None };
         let mut events = Vec::new();
         for _ in 0..self.steps() {
             let Some(next) = recorder.next(self.session.tick()) else {

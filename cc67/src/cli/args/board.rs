@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use compiler::words::suggest;
 use kmotiondef::boards::TargetBoard;
 use runtime::{Directory, HostFiles, MachineFile, Overlay, REMARKS};
-use vm::engine::{Observed, Preemption};
+use vm::engine::{ObservedAccesses, Preemption};
 use vm::machine::Config as MachineConfig;
 
 use super::controller::ControllerArguments;
@@ -147,9 +147,9 @@ impl BoardArguments {
             shortcuts: !self.no_shortcuts,
             preemption: self.form().preemption(),
             observed: match (self.schedule.is_some(), self.races) {
-                (true, _) => Observed::All,
-                (false, true) => Observed::Fresh,
-                (false, false) => Observed::None,
+                (true, _) => ObservedAccesses::All,
+                (false, true) => ObservedAccesses::Fresh,
+                (false, false) => ObservedAccesses::None,
             },
             ..MachineConfig::default()
         }

@@ -25,7 +25,7 @@ use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
 use crate::cli::report::numbers::Tolerance;
-use crate::cli::session::{BoardSession, Setup, Started, Work, boot, run_with_boxes};
+use crate::cli::session::{BoardSession, Setup, StartPlan, Work, boot, run_with_boxes};
 use outcome::Outcome;
 use random::RandomArguments;
 
@@ -229,8 +229,8 @@ impl CompareArguments {
         Ok(if is_equal { Verdict::Equal } else { Verdict::Unequal })
     }
 
-    fn started<'a>(&'a self, programs: &'a [OsString]) -> Started<'a> {
-        Started { programs, first: &self.sidecars.first }
+    fn started<'a>(&'a self, programs: &'a [OsString]) -> StartPlan<'a> {
+        StartPlan { programs, first: &self.sidecars.first }
     }
 
     /// The run on the modelled board; `None` if a source has errors.

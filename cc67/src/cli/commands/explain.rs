@@ -29,7 +29,7 @@ use crate::cli::io::output;
 type List = (&'static str, fn() -> String);
 
 /// A name that can be explained, with a one-sentence description.
-struct Explained {
+struct ExplainedName {
     name: &'static str,
     about: String,
 }
@@ -160,10 +160,11 @@ fn warnings() -> String {
 }
 
 /// All names with their sentences.
-fn entries() -> Vec<Explained> {
+fn entries() -> Vec<ExplainedName> {
     let lints =
-        Lint::ALL.iter().map(|lint| Explained { name: lint.name(), about: lint.summary().to_owned() });
-    let remarks = REMARKS.iter().map(|row| Explained { name: row.code, about: row.about.trim().to_owned() });
+        Lint::ALL.iter().map(|lint| ExplainedName { name: lint.name(), about: lint.summary().to_owned() });
+    let remarks =
+        REMARKS.iter().map(|row| ExplainedName { name: row.code, about: row.about.trim().to_owned() });
     let mut all = topics::entries();
     all.extend(functions::entries());
     all.extend(places::entries());
@@ -182,7 +183,7 @@ fn found(word: &str) -> Result<String> {
         bail!("no page is named `{word}`; did you mean `{near}`?");
     }
     let lower = word.to_lowercase();
-    let has = |entry: &&Explained| {
+    let has = |entry: &&ExplainedName| {
         let text = format!("{} {}", entry.name, entry.about).to_lowercase();
         text.split(|c: char| !c.is_alphanumeric() && c != '_')
             .any(|of| of.strip_prefix(lower.as_str()).is_some_and(|rest| rest.len() <= 2))
@@ -204,7 +205,7 @@ fn found(word: &str) -> Result<String> {
 }
 
 /// The name that was probably meant; for the name of a list, that list.
-fn near(word: &str, entries: &[Explained]) -> Option<&'static str> {
+fn near(word: &str, entries: &[ExplainedName]) -> Option<&'static str> {
     const LISTS: &[&str] = &["warnings", "remarks", "limits", "functions", "variables", "commands", "topics"];
     let names = || entries.iter().map(|entry| entry.name).chain(LISTS.iter().copied());
     let near = suggest(word, names())?;

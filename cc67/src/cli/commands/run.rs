@@ -6,7 +6,7 @@ use std::ffi::{OsStr, OsString};
 use std::io::{self, BufWriter};
 
 use anyhow::Result;
-use cc67_host::{End, Ending, Session, Target};
+use cc67_host::{End, EndReport, Session, Target};
 use clap::Args;
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{AxisId, ThreadId, Ticks};
@@ -20,12 +20,12 @@ use crate::cli::args::trace::TraceArguments;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::Pace;
 use crate::cli::io::{interrupt, output, terminal};
-use crate::cli::report::profile::{self, Sampled};
+use crate::cli::report::profile::{self, SampledBoard};
 use crate::cli::report::screen::{Audience, Screen, Style, no_run};
-use crate::cli::report::seen::Seen;
+use crate::cli::report::seen::Failures;
 use crate::cli::report::state::FinalState;
 use crate::cli::report::trace::{self, Trace};
-use crate::cli::session::{BoardSession, Setup, Started, Work, controller, run_with_boxes};
+use crate::cli::session::{BoardSession, Setup, StartPlan, Work, controller, run_with_boxes};
 use schedules::ExploreArguments;
 
 /// Arguments of `cc67 run`.
@@ -108,7 +108,7 @@ fn run_profiled(arguments: &RunArguments, setup: Setup, target: &str) -> Result<
             let mut rig = setup.rig_of_firmware(&firmware)?;
             rig.session.sample_processor();
             let exit = arguments.execute(&mut rig)?;
-            (exit, Sampled::of(&rig.session).report(&target)?)
+            (exit, SampledBoard::of(&rig.session).report(&target)?)
         }
         None => {
             let mut rig = setup.rig(ProfilingEngine::default())?;
@@ -133,8 +133,8 @@ impl RunArguments {
     }
 
     /// The programs and the order in which they start.
-    fn started(&self) -> Started<'_> {
-        Started { programs: &self.programs, first: &self.sidecars.first }
+    fn started(&self) -> StartPlan<'_> {
+        StartPlan { programs: &self.programs, first: &self.sidecars.first }
     }
 
     /// The limit of the run.
@@ -156,7 +156,7 @@ impl RunArguments {
         let begin = |request| Trace::begin(&self.trace, request, is_connected);
         let mut trace = request.as_ref().map(begin).transpose()?;
         rig.connect()?;
-        let mut seen = Seen::default();
+        let mut seen = Failures::default();
         let limit = self.ticks();
         let pace = self.realtime.then(|| Pace::new(rig.session.tick()));
         let mut sink = |event| {
@@ -242,7 +242,7 @@ fn active<T: Target>(session: &Session<T>) -> Vec<u8> {
 }
 
 /// Describes the end of an incomplete run: the threads that are still active and the events for which they wait.
-fn how_it_ended<T: Target>(exit: Exit, session: &Session<T>, ending: &Ending) -> Option<String> {
+fn how_it_ended<T: Target>(exit: Exit, session: &Session<T>, ending: &EndReport) -> Option<String> {
     let moving = session.target().moving();
     let is_over = ending.has_all_ended() && moving.is_empty();
     let head = match exit {

@@ -53,14 +53,14 @@ pub(crate) struct Draft {
     writer: BufWriter<File>,
     path: PathBuf,
     /// Its temporary name; devices such as /dev/null are written directly, as no file may replace them.
-    temporary: Option<Temporary>,
+    temporary: Option<TemporaryPath>,
 }
 
 impl Draft {
     /// Begins a file.
     pub(crate) fn new(path: &Path) -> Result<Self> {
         let is_device = fs::metadata(path).is_ok_and(|known| !known.is_file() && !known.is_dir());
-        let temporary = (!is_device).then(|| Temporary(leftovers::clean(path, "tmp")));
+        let temporary = (!is_device).then(|| TemporaryPath(leftovers::clean(path, "tmp")));
         let name = temporary.as_ref().map_or(path, |temporary| &temporary.0);
         let file = File::create(name).map_err(|error| cannot_write(path, &error))?;
         if temporary.is_some() {
@@ -99,13 +99,13 @@ impl Write for Draft {
 #[derive(Debug)]
 pub(crate) struct Scratch {
     writer: BufWriter<File>,
-    name: Temporary,
+    name: TemporaryPath,
 }
 
 impl Scratch {
     /// Creates it in the folder of the file for which it is needed.
     pub(crate) fn beside(path: &Path) -> Result<Self> {
-        let name = Temporary(leftovers::clean(path, "body.tmp"));
+        let name = TemporaryPath(leftovers::clean(path, "body.tmp"));
         let file = File::options().read(true).write(true).create(true).truncate(true).open(&name.0);
         let file = file.map_err(|error| cannot_write(path, &error))?;
         leftovers::mark(&file);
@@ -135,9 +135,9 @@ impl Write for Scratch {
 
 /// A temporary name, whose file is removed on drop.
 #[derive(Debug)]
-struct Temporary(PathBuf);
+struct TemporaryPath(PathBuf);
 
-impl Drop for Temporary {
+impl Drop for TemporaryPath {
     fn drop(&mut self) {
         // An incomplete file is useless.
         let _ = fs::remove_file(&self.0);

@@ -85,7 +85,7 @@ impl fmt::Display for Deviation {
 /// The differences between the numbers of two lines; `None` if the lines differ otherwise, or by more than the
 /// tolerance.
 pub(crate) fn deviation(one: &str, other: &str, allowed: Tolerance) -> Option<Deviation> {
-    let (ones, others) = (Pieces::of(one), Pieces::of(other));
+    let (ones, others) = (LinePieces::of(one), LinePieces::of(other));
     if ones.words != others.words {
         return None;
     }
@@ -120,7 +120,7 @@ fn unit(text: &str) -> Option<f64> {
 
 /// A printed number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Printed {
+struct PrintedNumber {
     value: f64,
     /// The value of one unit in its last digit.
     digit: f64,
@@ -128,13 +128,13 @@ struct Printed {
 
 /// A line, split into numbers and the texts around them.
 #[derive(Debug, Default, PartialEq)]
-struct Pieces<'a> {
-    numbers: Vec<Printed>,
+struct LinePieces<'a> {
+    numbers: Vec<PrintedNumber>,
     /// The texts before, between and after the numbers.
     words: Vec<&'a str>,
 }
 
-impl<'a> Pieces<'a> {
+impl<'a> LinePieces<'a> {
     fn of(line: &'a str) -> Self {
         let mut pieces = Self::default();
         let (mut rest, mut from) = (line, 0);
@@ -203,11 +203,11 @@ fn end_of_number(bytes: &[u8], from: usize) -> usize {
     end
 }
 
-fn printed(text: &str) -> Option<Printed> {
+fn printed(text: &str) -> Option<PrintedNumber> {
     let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
     let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
     let power = exponent.parse::<i32>().ok()?.checked_sub(i32::try_from(decimals).ok()?)?;
-    Some(Printed { value: text.parse().ok()?, digit: libm::pow(10.0, power.into()) })
+    Some(PrintedNumber { value: text.parse().ok()?, digit: libm::pow(10.0, power.into()) })
 }
 
 #[cfg(test)]

@@ -12,11 +12,11 @@ use runtime::{Event, EventKind, Message, Remark, Severity};
 use serde::Serialize;
 use vm::trap::Scene;
 
-use super::repeats::Repeats;
+use super::repeats::RemarkCounts;
 use super::state::FinalState;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
-use cc67_host::{Ending, EndingAxis, EndingThread, SourceCall, remark};
+use cc67_host::{AxisReport, EndReport, SourceCall, ThreadReport, remark};
 
 /// The style for showing a run.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,7 +44,7 @@ enum JsonLine<'a> {
         text: &'a str,
         /// Registers and code, for code of the real processor.
         #[serde(flatten, skip_serializing_if = "Option::is_none")]
-        scene: Option<SceneLeft<'a>>,
+        scene: Option<SceneJson<'a>>,
     },
     /// The PC has acted for a program.
     Pc { seconds: f64, text: &'a str },
@@ -57,7 +57,7 @@ enum JsonLine<'a> {
         code: Option<&'static str>,
         /// The location of the call, if a program made it.
         #[serde(flatten)]
-        place: Option<CallLeft<'a>>,
+        place: Option<CallJson<'a>>,
         text: &'a str,
     },
     /// The run is over.
@@ -66,27 +66,27 @@ enum JsonLine<'a> {
 
 /// Registers and code around the position of a trap.
 #[derive(Clone, Debug, Serialize)]
-struct SceneLeft<'a> {
+struct SceneJson<'a> {
     /// The address of the instruction.
     at: u32,
     /// Values by the names of the registers.
     registers: BTreeMap<&'a str, u32>,
     /// The words around the position.
-    code: Vec<CodeLeft<'a>>,
+    code: Vec<CodeJson<'a>>,
 }
 
 /// A word of code.
 #[derive(Clone, Debug, Serialize)]
-struct CodeLeft<'a> {
+struct CodeJson<'a> {
     at: u32,
     /// The word with its instruction.
     text: &'a str,
 }
 
-impl<'a> From<&'a Scene> for SceneLeft<'a> {
+impl<'a> From<&'a Scene> for SceneJson<'a> {
     fn from(scene: &'a Scene) -> Self {
         let registers = scene.registers.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-        let code = scene.code.iter().map(|(at, text)| CodeLeft { at: *at, text }).collect();
+        let code = scene.code.iter().map(|(at, text)| CodeJson { at: *at, text }).collect();
         Self { at: scene.at, registers, code }
     }
 }
@@ -106,8 +106,8 @@ struct Summary<'a> {
     traps: u64,
     remarks: u64,
     /// Threads that have not ended, and the axes that programs have used.
-    threads: Vec<ThreadLeft<'a>>,
-    used_axes: Vec<AxisLeft<'a>>,
+    threads: Vec<ThreadJson<'a>>,
+    used_axes: Vec<AxisJson<'a>>,
     /// The threads that are still active.
     active: &'a [u8],
     /// The final state of the board.
@@ -135,20 +135,20 @@ pub(crate) fn no_run(exit: Exit, reason: &str) -> String {
 
 /// A thread that has not ended.
 #[derive(Clone, Debug, Serialize)]
-struct ThreadLeft<'a> {
+struct ThreadJson<'a> {
     thread: u8,
     state: &'a str,
     #[serde(flatten)]
-    place: Option<CallLeft<'a>>,
+    place: Option<CallJson<'a>>,
     /// The calls that led there, innermost first.
-    calls: Vec<CallLeft<'a>>,
+    calls: Vec<CallJson<'a>>,
     waits_for: &'a [String],
     since: f64,
 }
 
 /// A position in a source.
 #[derive(Clone, Copy, Debug, Serialize)]
-struct CallLeft<'a> {
+struct CallJson<'a> {
     file: &'a str,
     line: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -158,7 +158,7 @@ struct CallLeft<'a> {
 
 /// An axis that programs have used.
 #[derive(Clone, Debug, Serialize)]
-struct AxisLeft<'a> {
+struct AxisJson<'a> {
     axis: u8,
     #[serde(skip_serializing_if = "str::is_empty")]
     name: &'a str,
@@ -169,31 +169,31 @@ struct AxisLeft<'a> {
     why: &'a [String],
 }
 
-impl<'a> From<&'a EndingThread> for ThreadLeft<'a> {
-    fn from(ending: &'a EndingThread) -> Self {
-        let EndingThread { thread, state, calls, waits_for, since } = ending;
-        let mut places = calls.iter().map(CallLeft::from);
+impl<'a> From<&'a ThreadReport> for ThreadJson<'a> {
+    fn from(ending: &'a ThreadReport) -> Self {
+        let ThreadReport { thread, state, calls, waits_for, since } = ending;
+        let mut places = calls.iter().map(CallJson::from);
         let (place, calls) = (places.next(), places.collect());
         Self { thread: thread.get(), state, place, calls, waits_for, since: *since }
     }
 }
 
-impl<'a> From<&'a SourceCall> for CallLeft<'a> {
+impl<'a> From<&'a SourceCall> for CallJson<'a> {
     fn from(call: &'a SourceCall) -> Self {
         Self { file: &call.file, line: call.line, column: call.column, function: &call.function }
     }
 }
 
-impl<'a> From<&'a EndingAxis> for AxisLeft<'a> {
-    fn from(ending: &'a EndingAxis) -> Self {
-        let EndingAxis { axis, name, enabled, dest, position, velocity, why } = ending;
+impl<'a> From<&'a AxisReport> for AxisJson<'a> {
+    fn from(ending: &'a AxisReport) -> Self {
+        let AxisReport { axis, name, enabled, dest, position, velocity, why } = ending;
         let (axis, enabled) = (axis.get(), *enabled);
         Self { axis, name, enabled, dest: *dest, position: *position, velocity: *velocity, why }
     }
 }
 
 /// A program that a stimulus may load: its thread, its name, and its debug information.
-pub(crate) type Offered = (ThreadId, String, DebugInfo);
+pub(crate) type OfferedProgram = (ThreadId, String, DebugInfo);
 
 /// The destination of events.
 pub(crate) struct Screen<W: Write> {
@@ -202,11 +202,11 @@ pub(crate) struct Screen<W: Write> {
     /// Debug information of the programs, and the thread of each.
     programs: Vec<DebugInfo>,
     threads: Vec<ThreadId>,
-    offered: Vec<Offered>,
+    offered: Vec<OfferedProgram>,
     console_lines: u64,
     traps: u64,
     remarks: u64,
-    repeats: Repeats,
+    repeats: RemarkCounts,
     /// Undriven inputs with their readers: reported together at the end of the run.
     undriven: Vec<(String, Bit, u8)>,
     /// Traps that are shown after the lines that the thread printed before.
@@ -223,7 +223,7 @@ impl<W: Write> Screen<W> {
         out: W,
         style: Style,
         programs: Vec<(ThreadId, DebugInfo)>,
-        offered: Vec<Offered>,
+        offered: Vec<OfferedProgram>,
     ) -> Self {
         let (threads, programs) = programs.into_iter().unzip();
         let (console_lines, traps, remarks, repeats, undriven) = Default::default();
@@ -339,7 +339,7 @@ impl<W: Write> Screen<W> {
         let call;
         let line = match &event.kind {
             EventKind::Trap(trap) => {
-                let scene = trap.scene.as_deref().map(SceneLeft::from);
+                let scene = trap.scene.as_deref().map(SceneJson::from);
                 JsonLine::Trap { seconds, thread: trap.thread.map(ThreadId::get), text, scene }
             }
             EventKind::Halted(_) => JsonLine::Trap { seconds, thread: None, text, scene: None },
@@ -347,7 +347,7 @@ impl<W: Write> Screen<W> {
             EventKind::Unmet(_) => JsonLine::Unmet { seconds, text },
             EventKind::Remark(remark) => {
                 call = remark.place.and_then(|at| remark::place(at, &self.programs));
-                let place = call.as_ref().map(CallLeft::from);
+                let place = call.as_ref().map(CallJson::from);
                 JsonLine::Remark { seconds, code: Some(remark.message.code()), place, text }
             }
             _ => JsonLine::Remark { seconds, code: None, place: None, text },
@@ -377,7 +377,7 @@ impl<W: Write> Screen<W> {
         reason: &str,
         at: Ticks,
         active: &[u8],
-        ending: &Ending,
+        ending: &EndReport,
         state: &FinalState,
     ) {
         self.show_traps(Cycles::new(i64::MAX));
@@ -401,8 +401,8 @@ impl<W: Write> Screen<W> {
             console_lines: self.console_lines,
             traps: self.traps,
             remarks: self.remarks,
-            threads: ending.threads.iter().map(ThreadLeft::from).collect(),
-            used_axes: ending.axes.iter().map(AxisLeft::from).collect(),
+            threads: ending.threads.iter().map(ThreadJson::from).collect(),
+            used_axes: ending.axes.iter().map(AxisJson::from).collect(),
             active,
             state,
         });
@@ -420,7 +420,7 @@ impl<W: Write> Screen<W> {
         match self.error.take() {
             Some(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(Audience::Gone),
             Some(error) => Err(error),
-            None => Ok(Audience::There),
+            None => Ok(Audience::Present),
         }
     }
 }
@@ -429,7 +429,7 @@ impl<W: Write> Screen<W> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub(crate) enum Audience {
-    There,
+    Present,
     Gone,
 }
 

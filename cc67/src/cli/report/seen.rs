@@ -7,12 +7,12 @@ use crate::cli::io::exit::Exit;
 
 /// The failures so far.
 #[derive(Debug, Default)]
-pub(crate) struct Seen {
+pub(crate) struct Failures {
     trapped: bool,
     unmet: bool,
 }
 
-impl Seen {
+impl Failures {
     /// Notes an event.
     pub(crate) fn note(&mut self, event: &Event) {
         self.trapped |= matches!(event.kind, EventKind::Trap(_) | EventKind::Halted(_));

@@ -18,7 +18,7 @@ const LOOK: f64 = 0.1;
 
 /// The user who answers.
 #[derive(Debug, Default)]
-struct Person {
+struct BoxUser {
     /// The box whose question was shown.
     asked: Option<OpenBox>,
     /// The lines typed by the user; `None` before the first question.
@@ -31,7 +31,7 @@ pub(crate) fn run_with_boxes<T: Target>(
     limit: Ticks,
     sink: &mut dyn FnMut(Event),
 ) -> Result<End> {
-    let mut person = Person::default();
+    let mut person = BoxUser::default();
     loop {
         let part = Ticks::new(rig.session.tick().get().saturating_add((LOOK / TIMEBASE) as u64)).min(limit);
         let end = rig.run(part, None, sink);
@@ -44,7 +44,7 @@ pub(crate) fn run_with_boxes<T: Target>(
     }
 }
 
-impl Person {
+impl BoxUser {
     /// Shows the question of a new box; returns the answer, once there is one.
     fn look(&mut self, open: Option<OpenBox>) -> Option<String> {
         if open != self.asked {

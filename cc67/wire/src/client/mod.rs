@@ -25,7 +25,7 @@ use crate::disk::{NoFiles, PcFiles};
 use crate::error::WireError;
 use crate::lines::{Decoder, Incoming};
 use crate::link::BoardLink;
-use refusals::Errors;
+use refusals::RefusalFinder;
 
 /// The time limit for the reply to a command.
 const ANSWER_WITHIN: Duration = Duration::from_secs(3);
@@ -51,7 +51,7 @@ pub struct Client {
     /// The number of lines in replies to commands of other clients.
     foreign_lines: u64,
     files: Box<dyn PcFiles>,
-    errors: Errors,
+    errors: RefusalFinder,
 }
 
 impl fmt::Debug for Client {
@@ -94,7 +94,7 @@ impl Client {
             lost_console_lines: 0,
             foreign_lines: 0,
             files: Box::new(NoFiles),
-            errors: Errors::default(),
+            errors: RefusalFinder::default(),
         };
         client.handshake()?;
         Ok(client)

@@ -23,14 +23,14 @@ pub(super) struct Refusal {
 ///
 /// A message consists of three console lines: the command, a caret under the error, the text.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Errors {
+pub(super) struct RefusalFinder {
     is_watching: bool,
     /// Lines that may be the beginning of a message.
     held: VecDeque<Vec<u8>>,
     found: Vec<Refusal>,
 }
 
-impl Errors {
+impl RefusalFinder {
     /// Notes that a command is sent.
     pub(super) fn watch(&mut self) {
         self.is_watching = true;
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     fn shown(lines: &[&str]) -> (Vec<String>, Vec<Refusal>) {
-        let mut errors = Errors::default();
+        let mut errors = RefusalFinder::default();
         errors.watch();
         let mut shown: Vec<_> =
             lines.iter().flat_map(|line| errors.filter(line.as_bytes().to_vec())).collect();

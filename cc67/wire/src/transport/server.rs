@@ -15,7 +15,7 @@ use super::{pipe, tcp};
 use crate::address::ServerAddress;
 use crate::clock::now;
 use crate::error::WireError;
-use crate::link::{BoardLink, Claimed, Ends, Outgoing};
+use crate::link::{BoardLink, ClaimResult, LinkEnds, Outgoing};
 
 /// Codes of requests.
 const WRITE_LINE: i32 = 1;
@@ -94,13 +94,13 @@ struct Reply {
 
 impl Connection {
     /// Serves one end of a link until the other is dropped, or the server is disconnected.
-    fn serve(mut self, ends: &Ends) {
+    fn serve(mut self, ends: &LinkEnds) {
         // A server that does not answer ends the link.
         let _ = self.run(ends);
         let _ = ends.received.send(std::mem::take(&mut self.received));
     }
 
-    fn run(&mut self, ends: &Ends) -> io::Result<()> {
+    fn run(&mut self, ends: &LinkEnds) -> io::Result<()> {
         self.request(SET_CONSOLE, &[])?;
         while !ends.is_closed.load(Ordering::Relaxed) {
             let pause = if self.is_claimed { Duration::ZERO } else { CONSOLE_EACH };
@@ -135,16 +135,16 @@ impl Connection {
     }
 
     /// Takes the token, with repeated attempts until a given time.
-    fn claim(&mut self, until: std::time::Instant) -> io::Result<Claimed> {
+    fn claim(&mut self, until: std::time::Instant) -> io::Result<ClaimResult> {
         loop {
             match self.request(LOCK, NAME)?.result {
                 LOCKED => {
                     self.is_claimed = true;
-                    return Ok(Claimed::Taken);
+                    return Ok(ClaimResult::Taken);
                 }
                 IN_USE if now() < until => std::thread::sleep(LOCK_EACH),
-                IN_USE => return Ok(Claimed::InUse),
-                _ => return Ok(Claimed::NotConnected),
+                IN_USE => return Ok(ClaimResult::InUse),
+                _ => return Ok(ClaimResult::NotConnected),
             }
         }
     }

@@ -8,7 +8,7 @@ use kmotiondef::ThreadId;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
 use vm::dsp::{Halt, State, packet_text};
 
-use super::{BootedBoard, GIE, Halted, ProcessorState};
+use super::{BootedBoard, GIE, HaltError, ProcessorState};
 use crate::bus::Hardware;
 use crate::external::ExternalHardware;
 
@@ -18,7 +18,7 @@ const LONGEST_CALL: u32 = 6 * 32;
 /// The end of a run to a stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
-pub enum Ran {
+pub enum RunOutcome {
     /// At the requested cycle.
     Through,
     /// At a stop, whose packet is executed next.
@@ -42,7 +42,7 @@ pub struct ProgramPacket {
 
 /// The position of the processor, and the preceding packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reached {
+pub struct StopPosition {
     /// The next packet.
     pub pc: u32,
     /// The user thread that has the processor, even while it is interrupted.
@@ -52,7 +52,7 @@ pub struct Reached {
     /// The packet of the call, if the last branch, apart from jumps inserted by the linker, was a call.
     pub call: Option<u32>,
     /// B3, which contains the return address at the beginning of a function.
-    pub back: u32,
+    pub return_address: u32,
     /// The stack pointer.
     pub stack: u32,
 }
@@ -80,30 +80,30 @@ impl<A: ExternalHardware> BootedBoard<A> {
     ///
     /// # Errors
     /// The firmware crashed; the board no longer runs.
-    pub fn run_to_stop(&mut self, cycle: u64) -> Result<Ran, Halted> {
+    pub fn run_to_stop(&mut self, cycle: u64) -> Result<RunOutcome, HaltError> {
         while self.cycle() < cycle {
-            if self.run_events(cycle)? == Ran::ToStop {
-                return Ok(Ran::ToStop);
+            if self.run_events(cycle)? == RunOutcome::ToStop {
+                return Ok(RunOutcome::ToStop);
             }
         }
-        Ok(Ran::Through)
+        Ok(RunOutcome::Through)
     }
 
     /// Returns the position of the processor, and the preceding packets.
     #[must_use]
-    pub fn reached(&self) -> Reached {
+    pub fn reached(&self) -> StopPosition {
         let state = &self.core.state;
         let back = state.reg(LINK);
         let [last, before] = state.branched_at();
         let is_call = |at: &u32| back.wrapping_sub(*at) <= LONGEST_CALL;
         let ProcessorState { pc, thread, is_masked } = self.processor_state();
-        Reached {
+        StopPosition {
             pc,
             thread: thread.and_then(user_thread),
             is_masked,
             // If the linker inserted a jump, the previous branch was the call.
             call: [before, last].into_iter().find(is_call),
-            back,
+            return_address: back,
             stack: state.reg(STACK),
         }
     }
@@ -112,7 +112,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
     /// function called by a program.
     #[must_use]
     pub fn program_call(&self) -> Option<ProgramCall> {
-        let Reached { pc, thread, is_masked, call, .. } = self.reached();
+        let StopPosition { pc, thread, is_masked, call, .. } = self.reached();
         let at = call.filter(|at| is_of_program(*at) && !is_of_program(pc))?;
         let argument = self.core.state.reg(ARGUMENTS[0]).cast_signed();
         Some(ProgramCall { function: pc, thread: thread.filter(|_| !is_masked), at, argument })

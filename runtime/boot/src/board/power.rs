@@ -10,7 +10,7 @@ use kmotiondef::map::{FLASH, IRAM, SDRAM};
 use vm::dsp::Core;
 use vm::memory::GuestMemory;
 
-use super::{BootedBoard, Halted, SECOND};
+use super::{BootedBoard, HaltError, SECOND};
 use crate::bus::Hardware;
 use crate::external::ExternalHardware;
 use crate::file::FirmwareFile;
@@ -42,7 +42,7 @@ pub enum FlashError {
     OtherFirmware,
     /// The firmware crashes when it starts from the contents of the flash.
     #[error(transparent)]
-    Halted(#[from] Halted),
+    Halted(#[from] HaltError),
 }
 
 impl BootedBoard {
@@ -63,7 +63,7 @@ impl BootedBoard {
     ///
     /// # Errors
     /// The firmware never polls the link.
-    pub fn booted(file: Arc<FirmwareFile>) -> Result<Self, Halted> {
+    pub fn booted(file: Arc<FirmwareFile>) -> Result<Self, HaltError> {
         let mut board = Self::new(file);
         board.boot()?;
         Ok(board)
@@ -93,7 +93,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
     ///
     /// # Errors
     /// It never polls the link.
-    pub fn boot(&mut self) -> Result<(), Halted> {
+    pub fn boot(&mut self) -> Result<(), HaltError> {
         while self.hardware.first_look.is_none() {
             if self.cycle() >= LONGEST_START {
                 let reason = "it has not begun to wait for the PC within 3 s of its start";

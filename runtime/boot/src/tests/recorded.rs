@@ -7,7 +7,7 @@ use std::{env, fs};
 use serde_json::Value;
 
 use super::exchanges::exchange;
-use crate::{BootedBoard, FirmwareFile, Sent};
+use crate::{BootedBoard, FirmwareFile, SentKind};
 
 /// All rows of a recording.
 pub(super) fn all_rows(name: &str) -> Vec<Value> {
@@ -200,9 +200,9 @@ const TIME_LINE: &str = "00000001 00000000 00000000";
 /// A line as it was recorded; the time in the status depends on the time of the request.
 fn text(line: &crate::SentLine) -> String {
     let escape = match line.kind {
-        Sent::Reply => "",
-        Sent::Console | Sent::Request => "\u{1b}",
-        Sent::Aborted => "\u{1b}C",
+        SentKind::Reply => "",
+        SentKind::Console | SentKind::Request => "\u{1b}",
+        SentKind::Aborted => "\u{1b}C",
     };
     without_time(&format!("{escape}{}", String::from_utf8_lossy(&line.text)))
 }

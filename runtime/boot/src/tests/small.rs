@@ -8,7 +8,7 @@ use coff::{
     Symbol, SymbolType, Target,
 };
 
-use crate::{BootedBoard, FirmwareError, FirmwareFile, FlashError, Halted, Sent};
+use crate::{BootedBoard, FirmwareError, FirmwareFile, FlashError, HaltError, SentKind};
 
 /// The address of the code, the interrupt vector, and the code of the interrupt.
 const START: u32 = 0x8000_0000;
@@ -138,7 +138,7 @@ fn a_small_firmware_handles_its_timer_prints_and_drives_a_generator() {
     board.run_to(begun + 20 * 18_000).expect("it runs");
     let lines = board.take_lines();
     let [line] = lines.as_slice() else { panic!("one line: {lines:?}") };
-    assert_eq!((line.kind, line.text.as_slice()), (Sent::Console, b"hi".as_slice()));
+    assert_eq!((line.kind, line.text.as_slice()), (SentKind::Console, b"hi".as_slice()));
     assert!((line.cycle - 3 * 18_000) < 1000, "in the third tick: {}", line.cycle);
     let (steps, rate) = board.steps(2);
     assert!((rate - 2_083_333.333).abs() < 0.01, "{rate}");
@@ -154,7 +154,7 @@ fn what_the_pc_sends_is_echoed() {
     board.run_to(board.cycle() + 9000).expect("it runs");
     assert!(board.has_read_all());
     let texts: Vec<_> = board.take_lines().into_iter().map(|line| (line.kind, line.text)).collect();
-    assert_eq!(texts, [(Sent::Reply, b"abc".to_vec())]);
+    assert_eq!(texts, [(SentKind::Reply, b"abc".to_vec())]);
 }
 
 #[test]
@@ -264,7 +264,7 @@ fn functions_in_rom_are_computed_and_interrupts_stay_on_time() {
 
 #[test]
 fn a_place_in_rom_without_a_function_ends_the_run_with_a_reason() {
-    let Err(Halted::Crashed(crash)) = BootedBoard::booted(file_with_rom(0x2D464)).and_then(|mut board| {
+    let Err(HaltError::Crashed(crash)) = BootedBoard::booted(file_with_rom(0x2D464)).and_then(|mut board| {
         let end = board.cycle() + 18_000;
         board.run_to(end)
     }) else {
@@ -275,7 +275,7 @@ fn a_place_in_rom_without_a_function_ends_the_run_with_a_reason() {
 
 /// The text of the crash of a firmware with this start code.
 fn crash(start: &str) -> String {
-    let Err(Halted::Crashed(crash)) = BootedBoard::booted(file(start)) else { panic!("it starts") };
+    let Err(HaltError::Crashed(crash)) = BootedBoard::booted(file(start)) else { panic!("it starts") };
     crash.to_string()
 }
 

@@ -1,12 +1,12 @@
 //! `[board]` and `[uart]`: option boards, flash and the serial port.
 
 use super::MachineFile;
-use super::read::{Read, Table, Value, keys};
+use super::read::{ReadResult, Table, Value, keys};
 
 /// Addresses on a port.
 const ADDRESSES: u32 = 8;
 
-pub(super) fn board(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+pub(super) fn board(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<()> {
     keys!(table, |key, value| {
         "kanalog" => {
             let choices = [("auto", false), ("false", false), ("true", true)];
@@ -24,7 +24,7 @@ pub(super) fn board(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
 }
 
 /// The addresses at which boards are present: all of them, or a list.
-fn konnects(value: &Value<'_>) -> Read<u8> {
+fn konnects(value: &Value<'_>) -> ReadResult<u8> {
     if value.text().is_ok() {
         return value.choice(&[("any", u8::MAX)]);
     }
@@ -32,7 +32,7 @@ fn konnects(value: &Value<'_>) -> Read<u8> {
     list.iter().try_fold(0, |present, address| Ok(present | 1 << address.whole(ADDRESSES - 1)?))
 }
 
-pub(super) fn uart(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+pub(super) fn uart(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<()> {
     keys!(table, |key, value| {
         "input" => machine.uart.input = file(&value)?;
         "output" => machine.uart.output = file(&value)?;
@@ -41,7 +41,7 @@ pub(super) fn uart(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
 }
 
 /// The name of a file; an empty one is none.
-pub(super) fn file(value: &Value<'_>) -> Read<Option<String>> {
+pub(super) fn file(value: &Value<'_>) -> ReadResult<Option<String>> {
     let name = value.text()?;
     Ok((!name.is_empty()).then(|| name.to_owned()))
 }

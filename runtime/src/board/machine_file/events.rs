@@ -4,7 +4,7 @@
 //! key's value.
 
 use super::MachineFileError;
-use super::read::{Read, Table, Value, Wrong};
+use super::read::{ReadResult, Table, TextError, Value};
 use crate::world::stimulus::{Form, KEYS, Rule, StatementPlace, Stimulus};
 
 /// The name under which messages about rules of a machine file cite their source.
@@ -14,13 +14,13 @@ const SOURCE: &str = "machine file";
 type Statement = (usize, String);
 
 /// The statements of `[[event]]`.
-pub(super) fn events(value: &Value<'_>) -> Read<Vec<Statement>> {
+pub(super) fn events(value: &Value<'_>) -> ReadResult<Vec<Statement>> {
     let tables = value.tables()?;
-    tables.iter().map(event).collect::<Read<Vec<_>>>().map(|all| all.concat())
+    tables.iter().map(event).collect::<ReadResult<Vec<_>>>().map(|all| all.concat())
 }
 
 /// The statements of `[[device]]`.
-pub(super) fn devices(value: &Value<'_>) -> Read<Vec<Statement>> {
+pub(super) fn devices(value: &Value<'_>) -> ReadResult<Vec<Statement>> {
     value.tables()?.iter().map(device).collect()
 }
 
@@ -29,15 +29,15 @@ pub(super) fn rules(statements: Vec<Statement>, text: &str) -> Result<Vec<Rule>,
     let mut rules = Vec::new();
     for (offset, statement) in statements {
         let read = Stimulus::parse(&statement, SOURCE)
-            .map_err(|error| Wrong::new(offset, error.message).in_text(text))?;
-        let MachineFileError { line, column, .. } = Wrong::new(offset, "").in_text(text);
+            .map_err(|error| TextError::new(offset, error.message).in_text(text))?;
+        let MachineFileError { line, column, .. } = TextError::new(offset, "").in_text(text);
         let place = StatementPlace { source: SOURCE.into(), line, column };
         rules.extend(read.rules.into_iter().map(|rule| Rule { place: place.clone(), ..rule }));
     }
     Ok(rules)
 }
 
-fn event(table: &Table<'_>) -> Read<Vec<Statement>> {
+fn event(table: &Table<'_>) -> ReadResult<Vec<Statement>> {
     let mut moment = String::new();
     let mut actions: Vec<Statement> = Vec::new();
     for (key, value) in table.entries() {
@@ -66,7 +66,7 @@ fn condition(text: &str) -> String {
 }
 
 /// Writes the statements of a key.
-fn write(form: Form, value: &Value<'_>, actions: &mut Vec<Statement>) -> Read<()> {
+fn write(form: Form, value: &Value<'_>, actions: &mut Vec<Statement>) -> ReadResult<()> {
     match form {
         Form::One(template) => {
             actions.push((value.offset(), template.replace("{value}", &literal(value))));
@@ -100,7 +100,7 @@ fn write(form: Form, value: &Value<'_>, actions: &mut Vec<Statement>) -> Read<()
 }
 
 /// The first template whose names are all keys of the table.
-fn fields(templates: &[&str], table: &Table<'_>) -> Read<String> {
+fn fields(templates: &[&str], table: &Table<'_>) -> ReadResult<String> {
     let names = |template: &str| -> Vec<String> {
         template.split('{').skip(1).filter_map(|part| part.split('}').next().map(str::to_owned)).collect()
     };
@@ -127,7 +127,7 @@ fn literal(value: &Value<'_>) -> String {
     value.text().map_or_else(|_| value.plain(), quoted)
 }
 
-fn device(table: &Table<'_>) -> Read<Statement> {
+fn device(table: &Table<'_>) -> ReadResult<Statement> {
     let mut name = None;
     let mut settings = String::new();
     for (key, value) in table.entries() {

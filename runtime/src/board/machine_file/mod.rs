@@ -16,7 +16,7 @@ use std::sync::Arc;
 use kmotiondef::boards::TargetBoard;
 use kmotiondef::{Axes, Bit};
 
-pub use crate::machine::Connected;
+pub use crate::machine::ConnectedEquipment;
 pub use crate::machine::description::{
     Analog, AnalogSource, Axis, Channel, Condition, Connection, Encoder, Gantry, Handwheel, Index, KeyPlace,
     Model, Motor, Probe, Spindle, SpindleDrive, Spring, Switch, Travel, Wire,
@@ -38,7 +38,7 @@ pub struct MachineFile {
     /// The axes, including those that the board does not have.
     pub axes: [Axis; Axes::MAX],
     /// The equipment that is connected to the board, without the loads of the axes.
-    pub connected: Connected,
+    pub connected: ConnectedEquipment,
     /// Connections of outputs with inputs.
     pub wires: Vec<Wire>,
     /// The events of the file, and the devices on pins.
@@ -65,7 +65,7 @@ impl Default for MachineFile {
             board: TargetBoard::default_board(),
             name: None,
             axes: std::array::from_fn(|_| Axis::default()),
-            connected: Connected::default(),
+            connected: ConnectedEquipment::default(),
             wires: Vec::new(),
             stimulus: Stimulus::default(),
             idle_high: Vec::new(),

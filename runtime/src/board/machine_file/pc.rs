@@ -3,10 +3,10 @@
 //! The answers are the settings of [`Answers`], which checks them; a mistake is reported at the value.
 
 use super::boards::file;
-use super::read::{Read, Table, Value, Wrong, keys};
+use super::read::{ReadResult, Table, TextError, Value, keys};
 use super::{Answers, MachineFile};
 
-pub(super) fn host(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+pub(super) fn host(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<()> {
     keys!(table, |key, value| {
         "enabled" => machine.pc.is_connected = value.flag()?;
         "disk_root" => machine.pc.disk_root = file(&value)?;
@@ -36,12 +36,12 @@ fn one_or_more<'a>(value: &Value<'a>) -> Vec<Value<'a>> {
     value.array().unwrap_or_else(|_| vec![value.clone()])
 }
 
-fn answer(answers: &mut Answers, value: &Value<'_>, setting: &str) -> Read<()> {
-    answers.set(setting).map_err(|error| Wrong::new(value.offset(), error.to_string()))
+fn answer(answers: &mut Answers, value: &Value<'_>, setting: &str) -> ReadResult<()> {
+    answers.set(setting).map_err(|error| TextError::new(value.offset(), error.to_string()))
 }
 
 /// Names that programs use, and the files meant.
-fn files(value: &Value<'_>) -> Read<Vec<(String, String)>> {
+fn files(value: &Value<'_>) -> ReadResult<Vec<(String, String)>> {
     let table = value.table()?;
     table.entries().map(|(key, value)| Ok((key.text.to_owned(), value.text()?.to_owned()))).collect()
 }

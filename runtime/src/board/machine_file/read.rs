@@ -11,12 +11,12 @@ use super::{KeyPlace, MachineFileError};
 
 /// Something wrong at an offset of the text.
 #[derive(Debug)]
-pub(super) struct Wrong {
+pub(super) struct TextError {
     offset: usize,
     message: String,
 }
 
-impl Wrong {
+impl TextError {
     pub(super) fn new(offset: usize, message: impl Into<String>) -> Self {
         Self { offset, message: message.into() }
     }
@@ -33,7 +33,7 @@ impl Wrong {
     }
 }
 
-pub(super) type Read<T> = Result<T, Wrong>;
+pub(super) type ReadResult<T> = Result<T, TextError>;
 
 /// The line of an offset, from 1.
 fn line(text: &str, offset: usize) -> usize {
@@ -84,8 +84,8 @@ impl<'a> Table<'a> {
         })
     }
 
-    pub(super) fn is_missing(&self, key: &str) -> Wrong {
-        Wrong::new(self.offset, format!("`{}` needs `{key}`", self.name))
+    pub(super) fn is_missing(&self, key: &str) -> TextError {
+        TextError::new(self.offset, format!("`{}` needs `{key}`", self.name))
     }
 }
 
@@ -105,22 +105,22 @@ impl Key<'_> {
     }
 
     /// The error for a word that is not one of those `known`.
-    pub(super) fn is_unknown(&self, known: &[&str]) -> Wrong {
+    pub(super) fn is_unknown(&self, known: &[&str]) -> TextError {
         let place = if self.table.is_empty() { String::new() } else { format!(" in `{}`", self.table) };
         let near = known.iter().min_by_key(|name| levenshtein(self.text, name));
         let hint = match near.filter(|name| levenshtein(self.text, name) <= 2) {
             Some(name) => format!("; did you mean `{name}`?"),
             None => format!("; known: {}", known.join(", ")),
         };
-        Wrong::new(self.offset, format!("unknown key `{}`{place}{hint}", self.text))
+        TextError::new(self.offset, format!("unknown key `{}`{place}{hint}", self.text))
     }
 
     /// The axis it numbers.
-    pub(super) fn axis(&self) -> Read<AxisId> {
+    pub(super) fn axis(&self) -> ReadResult<AxisId> {
         let axes = self.from.board.axes;
         let number = self.text.parse().ok().and_then(|number| axes.get(number));
         let wrong = || format!("`{}` is not an axis (0-{})", self.text, axes.last());
-        number.ok_or_else(|| Wrong::new(self.offset, wrong()))
+        number.ok_or_else(|| TextError::new(self.offset, wrong()))
     }
 }
 
@@ -133,7 +133,7 @@ pub(super) struct Value<'a> {
 }
 
 impl<'a> Value<'a> {
-    pub(super) fn is_wrong(&self, expected: &str) -> Wrong {
+    pub(super) fn is_wrong(&self, expected: &str) -> TextError {
         let found = match self.source.get_ref() {
             DeValue::String(text) => format!("{text:?}"),
             DeValue::Integer(number) => number.as_str().to_owned(),
@@ -144,7 +144,7 @@ impl<'a> Value<'a> {
             }
             other => format!("a value of type {}", other.type_str()),
         };
-        Wrong::new(self.source.span().start, format!("`{}` must be {expected}, not {found}", self.path))
+        TextError::new(self.source.span().start, format!("`{}` must be {expected}, not {found}", self.path))
     }
 
     /// Returns its offset in the text.
@@ -175,24 +175,24 @@ impl<'a> Value<'a> {
     }
 
     /// A number.
-    pub(super) fn number(&self) -> Read<f64> {
+    pub(super) fn number(&self) -> ReadResult<f64> {
         self.parsed().filter(|number| number.is_finite()).ok_or_else(|| self.is_wrong("a number"))
     }
 
     /// A number above 0.
-    pub(super) fn positive(&self) -> Read<f64> {
+    pub(super) fn positive(&self) -> ReadResult<f64> {
         let number = self.parsed().filter(|number| number.is_finite() && *number > 0.0);
         number.ok_or_else(|| self.is_wrong("a number above 0"))
     }
 
     /// A number from 0.
-    pub(super) fn not_negative(&self) -> Read<f64> {
+    pub(super) fn not_negative(&self) -> ReadResult<f64> {
         let number = self.parsed().filter(|number| number.is_finite() && *number >= 0.0);
         number.ok_or_else(|| self.is_wrong("0 or a positive number"))
     }
 
     /// A whole number up to `max`.
-    pub(super) fn whole(&self, max: u32) -> Read<u32> {
+    pub(super) fn whole(&self, max: u32) -> ReadResult<u32> {
         let number =
             self.parsed().filter(|number| number.fract() == 0.0 && (0.0..=f64::from(max)).contains(number));
         number
@@ -201,7 +201,7 @@ impl<'a> Value<'a> {
     }
 
     /// `true` or `false`, or 1 or 0.
-    pub(super) fn flag(&self) -> Read<bool> {
+    pub(super) fn flag(&self) -> ReadResult<bool> {
         match (self.source.get_ref(), self.parsed()) {
             (DeValue::Boolean(flag), _) => Ok(*flag),
             (_, Some(number)) if number == 0.0 || number == 1.0 => Ok(number == 1.0),
@@ -210,7 +210,7 @@ impl<'a> Value<'a> {
     }
 
     /// A text.
-    pub(super) fn text(&self) -> Read<&'a str> {
+    pub(super) fn text(&self) -> ReadResult<&'a str> {
         match self.source.get_ref() {
             DeValue::String(text) => Ok(text),
             _ => Err(self.is_wrong("a text in quotes")),
@@ -218,7 +218,7 @@ impl<'a> Value<'a> {
     }
 
     /// One of some words.
-    pub(super) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Read<T> {
+    pub(super) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> ReadResult<T> {
         let word = match self.source.get_ref() {
             DeValue::String(text) => text.to_string(),
             DeValue::Boolean(flag) => flag.to_string(),
@@ -235,7 +235,7 @@ impl<'a> Value<'a> {
     }
 
     /// An axis number.
-    pub(super) fn axis(&self) -> Read<AxisId> {
+    pub(super) fn axis(&self) -> ReadResult<AxisId> {
         let number = self
             .parsed()
             .filter(|number| number.fract() == 0.0)
@@ -244,18 +244,18 @@ impl<'a> Value<'a> {
     }
 
     /// A bit that can be driven from outside.
-    pub(super) fn input(&self) -> Read<Bit> {
+    pub(super) fn input(&self) -> ReadResult<Bit> {
         self.bit_that("an input", |direction| {
             matches!(direction, BitDirection::Input | BitDirection::Programmable)
         })
     }
 
     /// A bit that a program can drive.
-    pub(super) fn output(&self) -> Read<Bit> {
+    pub(super) fn output(&self) -> ReadResult<Bit> {
         self.bit_that("an output", |direction| direction != BitDirection::Input)
     }
 
-    fn bit_that(&self, what: &str, goes: impl Fn(BitDirection) -> bool) -> Read<Bit> {
+    fn bit_that(&self, what: &str, goes: impl Fn(BitDirection) -> bool) -> ReadResult<Bit> {
         let number =
             self.parsed().filter(|number| number.fract() == 0.0).and_then(|number| Bit::new(number as i32));
         let bit = number.ok_or_else(|| self.is_wrong("a bit number, 0 to 2047"))?;
@@ -263,14 +263,14 @@ impl<'a> Value<'a> {
             Some(range) if goes(range.direction) => Ok(bit),
             Some(range) => {
                 let text = format!("`{}` must be {what}, not bit {bit} ({})", self.path, range.name);
-                Err(Wrong::new(self.source.span().start, text))
+                Err(TextError::new(self.source.span().start, text))
             }
             None => Err(self.is_wrong("a bit that is connected to something")),
         }
     }
 
     /// An array.
-    pub(super) fn array(&self) -> Read<Vec<Value<'a>>> {
+    pub(super) fn array(&self) -> ReadResult<Vec<Value<'a>>> {
         match self.source.get_ref() {
             DeValue::Array(values) => Ok(values
                 .iter()
@@ -286,7 +286,7 @@ impl<'a> Value<'a> {
     }
 
     /// A table.
-    pub(super) fn table(&self) -> Read<Table<'a>> {
+    pub(super) fn table(&self) -> ReadResult<Table<'a>> {
         match self.source.get_ref() {
             DeValue::Table(entries) => {
                 Ok(Table::new(&self.path, self.source.span().start, entries, self.from))
@@ -297,7 +297,7 @@ impl<'a> Value<'a> {
     }
 
     /// A table of tables that have numbers as keys.
-    pub(super) fn numbered(&self) -> Read<Table<'a>> {
+    pub(super) fn numbered(&self) -> ReadResult<Table<'a>> {
         match self.source.get_ref() {
             DeValue::Table(_) => self.table(),
             _ => Err(self.is_wrong(&format!("tables with a number, such as `[{}.0]`", self.path))),
@@ -305,7 +305,7 @@ impl<'a> Value<'a> {
     }
 
     /// The tables of `[[name]]`.
-    pub(super) fn tables(&self) -> Read<Vec<Table<'a>>> {
+    pub(super) fn tables(&self) -> ReadResult<Vec<Table<'a>>> {
         self.array()?.iter().map(Value::table).collect()
     }
 }

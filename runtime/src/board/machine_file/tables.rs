@@ -3,7 +3,7 @@
 use kmotiondef::{AxisId, Bit};
 use toml::de::DeTable;
 
-use super::read::{Read, Source, Table, Value, Wrong, keys};
+use super::read::{ReadResult, Source, Table, TextError, Value, keys};
 use super::{
     Analog, AnalogSource, Axis, Channel, Condition, Encoder, Gantry, Handwheel, Index, MachineFile,
     MachineFileError, Model, Probe, Spindle, SpindleDrive, Spring, Switch, Travel, Wire,
@@ -18,7 +18,7 @@ use crate::out::REMARKS;
 pub(super) fn apply(machine: &mut MachineFile, text: &str, is_option: bool) -> Result<(), MachineFileError> {
     let table = DeTable::parse(text).map_err(|error| {
         let offset = error.span().map_or(0, |span| span.start);
-        Wrong::new(offset, error.message()).in_text(text)
+        TextError::new(offset, error.message()).in_text(text)
     })?;
     let mut statements = Vec::new();
     let from = Source { text: (!is_option).then_some(text), board: machine.board };
@@ -28,7 +28,11 @@ pub(super) fn apply(machine: &mut MachineFile, text: &str, is_option: bool) -> R
     Ok(())
 }
 
-fn root(machine: &mut MachineFile, statements: &mut Vec<(usize, String)>, table: &Table<'_>) -> Read<()> {
+fn root(
+    machine: &mut MachineFile,
+    statements: &mut Vec<(usize, String)>,
+    table: &Table<'_>,
+) -> ReadResult<()> {
     keys!(table, |key, value| {
         "axis" => axes(machine, &value.numbered()?)?;
         "switch" => machine.connected.switches.extend(each(&value, switch)?);
@@ -51,7 +55,7 @@ fn root(machine: &mut MachineFile, statements: &mut Vec<(usize, String)>, table:
 }
 
 /// `CODE = false` switches a remark off.
-fn remarks(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+fn remarks(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<()> {
     for (key, value) in table.entries() {
         let is_wanted = value.flag()?;
         if machine.want_remark(key.text, is_wanted).is_none() {
@@ -62,11 +66,11 @@ fn remarks(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
     Ok(())
 }
 
-fn each<T>(value: &Value<'_>, read: impl Fn(&Table<'_>) -> Read<T>) -> Read<Vec<T>> {
+fn each<T>(value: &Value<'_>, read: impl Fn(&Table<'_>) -> ReadResult<T>) -> ReadResult<Vec<T>> {
     value.tables()?.iter().map(read).collect()
 }
 
-fn axes(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+fn axes(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<()> {
     for (key, value) in table.entries() {
         let (number, table) = (key.axis()?, value.table()?);
         axis(&mut machine.axes[number.index()], &table)?;
@@ -76,7 +80,7 @@ fn axes(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
 }
 
 /// Refuses a second encoder on an input.
-fn one_encoder(machine: &MachineFile, axis: AxisId, table: &Table<'_>) -> Read<()> {
+fn one_encoder(machine: &MachineFile, axis: AxisId, table: &Table<'_>) -> ReadResult<()> {
     let wiring = Wiring::new(&machine.axes);
     let Some(input) = wiring.input(axis) else { return Ok(()) };
     let Some(other) = AxisId::all().find(|other| *other != axis && wiring.input(*other) == Some(input))
@@ -88,10 +92,10 @@ fn one_encoder(machine: &MachineFile, axis: AxisId, table: &Table<'_>) -> Read<(
          number, unless `encoder = {{ input = N }}` says otherwise)",
         table.name
     );
-    Err(Wrong::new(table.offset, text))
+    Err(TextError::new(table.offset, text))
 }
 
-fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
+fn axis(axis: &mut Axis, table: &Table<'_>) -> ReadResult<()> {
     axis.keys.extend(table.entries().map(|(key, _)| (key.text.to_owned(), key.place())));
     keys!(table, |key, value| {
         "name" => value.text()?.clone_into(&mut axis.name);
@@ -127,13 +131,13 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
     let Travel { min, max, .. } = axis.travel;
     if min > max {
         let text = format!("`{}`: min {min} exceeds max {max}", table.name);
-        return Err(Wrong::new(table.offset, text));
+        return Err(TextError::new(table.offset, text));
     }
     Ok(())
 }
 
 /// `{ hz = 20, damping = 0.05 }`
-fn spring(table: &Table<'_>) -> Read<Spring> {
+fn spring(table: &Table<'_>) -> ReadResult<Spring> {
     const FASTEST: f64 = 500.0;
     let (mut hz, mut damping) = (None, 0.05);
     keys!(table, |key, value| {
@@ -144,7 +148,7 @@ fn spring(table: &Table<'_>) -> Read<Spring> {
 }
 
 /// `axes = [0, 1]` and `most`.
-fn gantry(table: &Table<'_>) -> Read<Gantry> {
+fn gantry(table: &Table<'_>) -> ReadResult<Gantry> {
     let (mut axes, mut most) = (Vec::new(), 100.0);
     keys!(table, |key, value| {
         "axes" => {
@@ -156,12 +160,12 @@ fn gantry(table: &Table<'_>) -> Read<Gantry> {
     });
     match axes[..] {
         [a, b] if a != b => Ok(Gantry { axes: [a, b], most }),
-        _ => Err(Wrong::new(table.offset, format!("`{}`: `axes` must name two axes", table.name))),
+        _ => Err(TextError::new(table.offset, format!("`{}`: `axes` must name two axes", table.name))),
     }
 }
 
 /// `{ input = 0 }`
-fn encoder_input(table: &Table<'_>) -> Read<usize> {
+fn encoder_input(table: &Table<'_>) -> ReadResult<usize> {
     let mut input = None;
     keys!(table, |key, value| {
         "input" => input = Some(value.whole(15)? as usize);
@@ -171,7 +175,7 @@ fn encoder_input(table: &Table<'_>) -> Read<usize> {
 
 /// `{ dac = 0 }`, `{ step = 8 }`, `{ pwm = 8 }` or `{ pwm = 0, amplifier = "snapamp" }` with the numbers of `OutputChan0`,
 /// or `{ forward = 152, back = 153 }`.
-fn channel(table: &Table<'_>) -> Read<Channel> {
+fn channel(table: &Table<'_>) -> ReadResult<Channel> {
     /// The number of PWM channels before those of the SnapAmps.
     const ON_BOARD: usize = 8;
     let (mut channel, mut is_snapamp) = (None, false);
@@ -192,12 +196,12 @@ fn channel(table: &Table<'_>) -> Read<Channel> {
     }
 }
 
-fn not_zero(value: &Value<'_>) -> Read<f64> {
+fn not_zero(value: &Value<'_>) -> ReadResult<f64> {
     let number = value.number()?;
     if number == 0.0 { Err(value.is_wrong("a number other than 0")) } else { Ok(number) }
 }
 
-fn index(table: &Table<'_>) -> Read<Index> {
+fn index(table: &Table<'_>) -> ReadResult<Index> {
     let (mut bit, mut every, mut width, mut offset) = (None, None, 1.0, 0.0);
     keys!(table, |key, value| {
         "bit" => bit = Some(value.input()?);
@@ -209,7 +213,7 @@ fn index(table: &Table<'_>) -> Read<Index> {
     Ok(Index { bit, every: every.ok_or_else(|| table.is_missing("every"))?, width, offset })
 }
 
-fn switch(table: &Table<'_>) -> Read<Switch> {
+fn switch(table: &Table<'_>) -> ReadResult<Switch> {
     let (mut bit, mut axis, mut when, mut active) = (None, None, None, true);
     keys!(table, |key, value| {
         "bit" => bit = Some(value.input()?);
@@ -227,7 +231,7 @@ fn switch(table: &Table<'_>) -> Read<Switch> {
 }
 
 /// `<= -1000`, `>= 5`, `between 3 7`.
-fn condition(value: &Value<'_>) -> Read<Condition> {
+fn condition(value: &Value<'_>) -> ReadResult<Condition> {
     let wrong = || value.is_wrong("\"<= X\", \">= X\" or \"between X Y\"");
     let text = value.text()?.trim();
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
@@ -245,7 +249,7 @@ fn condition(value: &Value<'_>) -> Read<Condition> {
     }
 }
 
-fn probe(table: &Table<'_>) -> Read<Probe> {
+fn probe(table: &Table<'_>) -> ReadResult<Probe> {
     let (mut bit, mut surface, mut above) = (None, None, false);
     keys!(table, |key, value| {
         "bit" => bit = Some(value.input()?);
@@ -257,7 +261,7 @@ fn probe(table: &Table<'_>) -> Read<Probe> {
     Ok(Probe { bit: bit.ok_or_else(|| table.is_missing("bit"))?, axis, touches, place: table.place() })
 }
 
-fn place(table: &Table<'_>) -> Read<(AxisId, f64)> {
+fn place(table: &Table<'_>) -> ReadResult<(AxisId, f64)> {
     let (mut axis, mut at) = (None, None);
     keys!(table, |key, value| {
         "axis" => axis = Some(value.axis()?);
@@ -266,31 +270,31 @@ fn place(table: &Table<'_>) -> Read<(AxisId, f64)> {
     Ok((axis.ok_or_else(|| table.is_missing("axis"))?, at.ok_or_else(|| table.is_missing("at"))?))
 }
 
-fn handwheels(wheels: &mut Vec<Handwheel>, value: &Value<'_>) -> Read<()> {
+fn handwheels(wheels: &mut Vec<Handwheel>, value: &Value<'_>) -> ReadResult<()> {
     for wheel in each(value, handwheel)? {
         if wheels.iter().any(|other| other.channel == wheel.channel) {
             let text = format!(
                 "`encoder`: channel {} has two tables; one of them has all its `moves`",
                 wheel.channel
             );
-            return Err(Wrong::new(value.offset(), text));
+            return Err(TextError::new(value.offset(), text));
         }
         wheels.push(wheel);
     }
     Ok(())
 }
 
-fn handwheel(table: &Table<'_>) -> Read<Handwheel> {
+fn handwheel(table: &Table<'_>) -> ReadResult<Handwheel> {
     let (mut channel, mut moves) = (None, Vec::new());
     keys!(table, |key, value| {
         "channel" => channel = Some(value.whole(15)? as usize);
-        "moves" => moves = value.array()?.iter().map(turn).collect::<Read<_>>()?;
+        "moves" => moves = value.array()?.iter().map(turn).collect::<ReadResult<_>>()?;
     });
     Ok(Handwheel { channel: channel.ok_or_else(|| table.is_missing("channel"))?, moves })
 }
 
 /// Start in seconds, counts, duration in seconds.
-fn turn(value: &Value<'_>) -> Read<[f64; 3]> {
+fn turn(value: &Value<'_>) -> ReadResult<[f64; 3]> {
     let parts = value.array()?;
     let [start, counts, duration] = parts.as_slice() else {
         return Err(value.is_wrong("[start in seconds, counts, duration in seconds]"));
@@ -298,7 +302,7 @@ fn turn(value: &Value<'_>) -> Read<[f64; 3]> {
     Ok([start.not_negative()?, counts.number()?, duration.not_negative()?])
 }
 
-fn analog(table: &Table<'_>) -> Read<Analog> {
+fn analog(table: &Table<'_>) -> ReadResult<Analog> {
     let (mut channel, mut source) = (None, None);
     keys!(table, |key, value| {
         "channel" => channel = Some(value.whole(7)? as usize);
@@ -311,7 +315,7 @@ fn analog(table: &Table<'_>) -> Read<Analog> {
 }
 
 /// Counts of an analog input, or volts as a text: `"7.5V"`.
-fn counts(value: &Value<'_>) -> Read<f64> {
+fn counts(value: &Value<'_>) -> ReadResult<f64> {
     let Ok(text) = value.text() else { return value.number() };
     let volts = text.strip_suffix('V').and_then(|volts| volts.trim().parse::<f64>().ok());
     let volts = volts.filter(|volts| volts.is_finite());
@@ -320,7 +324,7 @@ fn counts(value: &Value<'_>) -> Read<f64> {
         .ok_or_else(|| value.is_wrong("counts, or volts such as \"7.5V\""))
 }
 
-fn sine(table: &Table<'_>) -> Read<AnalogSource> {
+fn sine(table: &Table<'_>) -> ReadResult<AnalogSource> {
     let (mut mean, mut amp, mut hz) = (0.0, 0.0, 1.0);
     keys!(table, |key, value| {
         "mean" => mean = value.number()?;
@@ -330,7 +334,7 @@ fn sine(table: &Table<'_>) -> Read<AnalogSource> {
     Ok(AnalogSource::Sine { mean, amp, hz })
 }
 
-fn follows(table: &Table<'_>) -> Read<AnalogSource> {
+fn follows(table: &Table<'_>) -> ReadResult<AnalogSource> {
     let (mut axis, mut gain, mut offset) = (None, 1.0, 0.0);
     keys!(table, |key, value| {
         "axis" => axis = Some(value.axis()?);
@@ -340,7 +344,7 @@ fn follows(table: &Table<'_>) -> Read<AnalogSource> {
     Ok(AnalogSource::Follows { axis: axis.ok_or_else(|| table.is_missing("axis"))?, gain, offset })
 }
 
-fn wire(table: &Table<'_>) -> Read<Wire> {
+fn wire(table: &Table<'_>) -> ReadResult<Wire> {
     let (mut from, mut to, mut invert, mut delay_s) = (None, None, false, 0.0);
     keys!(table, |key, value| {
         "from" => from = Some(value.output()?);
@@ -357,7 +361,7 @@ fn wire(table: &Table<'_>) -> Read<Wire> {
 }
 
 /// `[spindle]`, which changes the first one, or `[[spindle]]`.
-fn spindles(spindles: &mut Vec<Spindle>, value: &Value<'_>) -> Read<()> {
+fn spindles(spindles: &mut Vec<Spindle>, value: &Value<'_>) -> ReadResult<()> {
     match value.table() {
         Ok(table) => {
             let changed = spindle(spindles.first().copied(), &table)?;
@@ -368,7 +372,7 @@ fn spindles(spindles: &mut Vec<Spindle>, value: &Value<'_>) -> Read<()> {
     Ok(())
 }
 
-fn spindle(before: Option<Spindle>, table: &Table<'_>) -> Read<Spindle> {
+fn spindle(before: Option<Spindle>, table: &Table<'_>) -> ReadResult<Spindle> {
     let (mut axis, mut drive) = (before.map(|spindle| spindle.axis), before.map(|spindle| spindle.drive));
     let [mut counts, mut full, mut tau] = before.map_or([4096.0, 50.0, 0.5], |spindle| {
         [spindle.counts_per_rev, spindle.full_scale_rps, spindle.tau_s]
@@ -397,14 +401,14 @@ fn spindle(before: Option<Spindle>, table: &Table<'_>) -> Read<Spindle> {
 }
 
 /// `axis 7`.
-fn named_axis(value: &Value<'_>) -> Read<AxisId> {
+fn named_axis(value: &Value<'_>) -> ReadResult<AxisId> {
     let number = value.text()?.strip_prefix("axis").and_then(|rest| rest.trim().parse().ok());
     let axes = value.board().axes;
     let wrong = || value.is_wrong(&format!("\"axis N\", 0 to {}", axes.last()));
     number.and_then(|number| axes.get(number)).ok_or_else(wrong)
 }
 
-fn directions(table: &Table<'_>) -> Read<SpindleDrive> {
+fn directions(table: &Table<'_>) -> ReadResult<SpindleDrive> {
     let (mut cw, mut ccw) = (None, None);
     keys!(table, |key, value| {
         "cw" => cw = Some(value.output()?);
@@ -416,7 +420,7 @@ fn directions(table: &Table<'_>) -> Read<SpindleDrive> {
     })
 }
 
-fn inputs(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+fn inputs(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<()> {
     keys!(table, |key, value| {
         "idle_high" => {
             for item in value.array()? {
@@ -429,7 +433,7 @@ fn inputs(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
 }
 
 /// A bit, or a range of them as a text: `140-143`.
-fn bits(value: &Value<'_>) -> Read<Vec<Bit>> {
+fn bits(value: &Value<'_>) -> ReadResult<Vec<Bit>> {
     let Ok(text) = value.text() else { return Ok(vec![value.input()?]) };
     let ends = text
         .split_once('-')
@@ -440,7 +444,7 @@ fn bits(value: &Value<'_>) -> Read<Vec<Bit>> {
     range.filter(|bits| !bits.is_empty()).ok_or_else(|| value.is_wrong("a range of bits, 0 to 2047"))
 }
 
-fn cpu(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+fn cpu(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<()> {
     keys!(table, |key, value| {
         "servo_us" => {
             let time = value.not_negative()?;

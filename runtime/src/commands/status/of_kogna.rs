@@ -8,7 +8,7 @@ use vm::memory::GuestMemory;
 
 use crate::firmware::parts::Parts;
 use crate::io::kogna::{INPUTS, Kogna, OUTPUTS};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The bits whose states and directions the record contains, and the words of their states.
 const FIRST_BIT: u16 = 200;

@@ -14,7 +14,7 @@ use crate::machine::Channel;
 use crate::machine::wiring::{DACS, ENCODERS, PWMS, channel_of};
 use crate::out::Message;
 use crate::servo::limits::{WatchedLimit, watched_limits};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use chips::kanalog::ADC_CHANNELS;
 
 /// PWM channels that do not belong to an option board.

@@ -18,11 +18,13 @@ use crate::io::kanalog::Group;
 pub(crate) use globals::Globals;
 pub(crate) use heap::Heap;
 pub(crate) use locks::{HeldLock, Locks};
-pub(crate) use motions::{EndedWait, Jogged, Motions, Overlap, Shift, SmallMove, WrongWait, WrongZero};
-pub(crate) use notices::{Called, Commanded, Named, Notices};
-pub(crate) use reading::Reading;
+pub(crate) use motions::{
+    EndedWait, JogRecord, Motions, Overlap, PositionShift, SmallMove, WrongWait, WrongZero,
+};
+pub(crate) use notices::{CommandedMotion, MotionCall, NamedObject, Notices};
+pub(crate) use reading::FileState;
 pub(crate) use serial::SerialService;
-pub(crate) use waits::{Repeated, Wait, Waits};
+pub(crate) use waits::{RepeatedCall, Wait, Waits};
 
 /// The state of a waiting call until it is repeated.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,7 +65,7 @@ pub(crate) struct Calls {
     pub(crate) serial: SerialService,
     pub(crate) heap: Heap,
     /// The state of files on the PC.
-    pub(crate) reading: Reading,
+    pub(crate) reading: FileState,
     pub(crate) globals: Globals,
     /// State of `rand`.
     pub(crate) seed: u32,
@@ -93,7 +95,7 @@ impl Default for Calls {
             continuations: Default::default(),
             serial: SerialService::default(),
             heap: Heap::default(),
-            reading: Reading::default(),
+            reading: FileState::default(),
             globals: Globals::default(),
             seed: 1,
             token: GuestAddr::NULL,
@@ -129,7 +131,7 @@ impl Calls {
     /// Restarts the board: all state of the firmware is as at power-up.
     pub(crate) fn restart(&mut self) {
         self.continuations = Default::default();
-        self.reading = Reading::default();
+        self.reading = FileState::default();
         self.serial = SerialService::default();
         self.heap = Heap::default();
         self.waits = Waits::default();

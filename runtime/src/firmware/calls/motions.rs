@@ -44,14 +44,14 @@ pub(crate) struct EndedWait {
 
 /// A jog that a thread has begun.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Jogged {
+pub(crate) struct JogRecord {
     pub(crate) thread: ThreadId,
     /// Dest at the call.
     pub(crate) dest: f64,
     /// Units per second.
     pub(crate) speed: f64,
     /// When the thread had last looked at anything.
-    pub(crate) looked: Cycles,
+    pub(crate) last_poll: Cycles,
 }
 
 /// A move of a few counts.
@@ -66,15 +66,15 @@ pub(crate) struct SmallMove {
 
 /// The place at which an axis was disabled in the middle of a move, and what became of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Cut {
+enum DisabledMove {
     /// Dest then.
     At(f64),
-    Shifted(Shift),
+    Shifted(PositionShift),
 }
 
 /// An axis was enabled as if it were at another place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Shift {
+pub(crate) struct PositionShift {
     /// Dest when it was disabled, and with which it was enabled.
     pub(crate) from: f64,
     pub(crate) to: f64,
@@ -126,13 +126,13 @@ pub(crate) struct Motions {
     connections: [Option<[i32; 4]>; Axes::MAX],
     threads: [Thread; ThreadId::MAX as usize],
     /// The jog of each axis, and the length of its last move.
-    jogged: [Option<Jogged>; Axes::MAX],
+    jogged: [Option<JogRecord>; Axes::MAX],
     ways: [f64; Axes::MAX],
     /// Vel of each axis when its last move began.
     speeds: [f32; Axes::MAX],
     /// The first move of each axis if that and all others are of a few counts; nothing after any other motion.
-    small: [Small; Axes::MAX],
-    cut: [Option<Cut>; Axes::MAX],
+    small: [SmallMoves; Axes::MAX],
+    cut: [Option<DisabledMove>; Axes::MAX],
     /// The axes that any thread has asked about; a bit for each.
     asked: u16,
     /// The first motion that began while an axis still moved.
@@ -141,7 +141,7 @@ pub(crate) struct Motions {
 
 /// The common property of the moves of an axis.
 #[derive(Clone, Copy, Debug, Default)]
-enum Small {
+enum SmallMoves {
     #[default]
     Unmoved,
     All(SmallMove),
@@ -166,22 +166,22 @@ impl Motions {
         self.ways[axis.index()] = way;
         let all = &mut self.small[axis.index()];
         *all = match (*all, small) {
-            (Small::Unmoved, Some(first)) => Small::All(first),
-            (Small::All(first), Some(_)) => Small::All(first),
-            (Small::Unmoved | Small::All(_), None) | (Small::Not, _) => Small::Not,
+            (SmallMoves::Unmoved, Some(first)) => SmallMoves::All(first),
+            (SmallMoves::All(first), Some(_)) => SmallMoves::All(first),
+            (SmallMoves::Unmoved | SmallMoves::All(_), None) | (SmallMoves::Not, _) => SmallMoves::Not,
         };
     }
 
     /// An axis does something else than a move.
     pub(crate) fn goes_on(&mut self, axis: AxisId) {
-        self.small[axis.index()] = Small::Not;
+        self.small[axis.index()] = SmallMoves::Not;
     }
 
     /// The first moves of the axes that have never moved by more than a few counts.
     pub(crate) fn small_moves(&self) -> impl Iterator<Item = (AxisId, SmallMove)> + '_ {
         AxisId::all().filter_map(|axis| match self.small[axis.index()] {
-            Small::All(first) => Some((axis, first)),
-            Small::Unmoved | Small::Not => None,
+            SmallMoves::All(first) => Some((axis, first)),
+            SmallMoves::Unmoved | SmallMoves::Not => None,
         })
     }
 
@@ -202,7 +202,7 @@ impl Motions {
 
     /// An axis is disabled at a destination, in the middle of a move.
     pub(crate) fn cut(&mut self, axis: AxisId, dest: f64) {
-        self.cut[axis.index()] = Some(Cut::At(dest));
+        self.cut[axis.index()] = Some(DisabledMove::At(dest));
     }
 
     /// An axis without a position of its own is enabled at a destination.
@@ -214,9 +214,9 @@ impl Motions {
         at: Option<CodeAddr>,
     ) {
         const NEAR: f64 = 1.0;
-        let Some(Cut::At(from)) = self.cut[axis.index()] else { return };
+        let Some(DisabledMove::At(from)) = self.cut[axis.index()] else { return };
         let at = at.filter(|_| (from - to).abs() > NEAR);
-        self.cut[axis.index()] = at.map(|at| Cut::Shifted(Shift { from, to, thread, at }));
+        self.cut[axis.index()] = at.map(|at| DisabledMove::Shifted(PositionShift { from, to, thread, at }));
     }
 
     /// An axis gets a new zero, or is on its way to one.
@@ -225,19 +225,19 @@ impl Motions {
     }
 
     /// The shift of the zero of an axis, once.
-    pub(crate) fn take_shift(&mut self, axis: AxisId) -> Option<Shift> {
+    pub(crate) fn take_shift(&mut self, axis: AxisId) -> Option<PositionShift> {
         let cut = &mut self.cut[axis.index()];
         match *cut {
-            Some(Cut::Shifted(shift)) => {
+            Some(DisabledMove::Shifted(shift)) => {
                 *cut = None;
                 Some(shift)
             }
-            Some(Cut::At(_)) | None => None,
+            Some(DisabledMove::At(_)) | None => None,
         }
     }
 
     /// A jog begins, or ends for `None`; the one before.
-    pub(crate) fn jogs(&mut self, axis: AxisId, jog: Option<Jogged>) -> Option<Jogged> {
+    pub(crate) fn jogs(&mut self, axis: AxisId, jog: Option<JogRecord>) -> Option<JogRecord> {
         std::mem::replace(&mut self.jogged[axis.index()], jog)
     }
 

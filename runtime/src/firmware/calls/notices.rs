@@ -21,7 +21,7 @@ const NEVER: Cycles = Cycles::new(i64::MAX);
 
 /// A named object of a program, an array perhaps.
 #[derive(Clone, Debug)]
-pub(crate) struct Named {
+pub(crate) struct NamedObject {
     /// Its name.
     pub(crate) name: String,
     /// Its first address.
@@ -41,7 +41,7 @@ struct Latch {
 
 /// A motion that a program commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Commanded {
+pub(crate) enum CommandedMotion {
     /// A move to a place.
     Move(f64),
     /// A move by a distance, to a place.
@@ -52,20 +52,20 @@ pub(crate) enum Commanded {
 
 /// The last motion of an axis.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Called {
+pub(crate) struct MotionCall {
     pub(crate) thread: ThreadId,
     pub(crate) at: Option<CodeAddr>,
-    pub(crate) motion: Commanded,
+    pub(crate) motion: CommandedMotion,
     /// Dest at the call, and its time.
     pub(crate) dest: f64,
     pub(crate) called: Cycles,
     /// The last time at which the thread had waited or polled anything, and the number of times it had done so.
-    pub(crate) looked: Cycles,
-    pub(crate) looks: u32,
+    pub(crate) last_poll: Cycles,
+    pub(crate) poll_count: u32,
     /// The number of polls of motions, and of anything except the time, before it; true once it has polled this one.
-    pub(crate) motion_looks: u32,
-    pub(crate) other_looks: u32,
-    pub(crate) is_asked: bool,
+    pub(crate) motion_polls: u32,
+    pub(crate) other_polls: u32,
+    pub(crate) is_polled: bool,
 }
 
 /// The observations in progress.
@@ -74,7 +74,7 @@ pub(crate) struct Notices {
     latches: Vec<Latch>,
     /// When the levels are checked.
     pub(crate) due: Cycles,
-    moves: [Option<Called>; Axes::MAX],
+    moves: [Option<MotionCall>; Axes::MAX],
     /// The last call that printed.
     pub(crate) last_print: (Option<ThreadId>, Option<CodeAddr>),
     /// True if a call printed more than the board takes from one, so that lines end elsewhere.
@@ -84,7 +84,7 @@ pub(crate) struct Notices {
     /// The call-back in the last tick.
     pub(crate) call_back: GuestAddr,
     /// The named objects of the programs that are loaded.
-    objects: [Arc<[Named]>; ThreadId::MAX as usize],
+    objects: [Arc<[NamedObject]>; ThreadId::MAX as usize],
 }
 
 impl Default for Notices {
@@ -137,19 +137,19 @@ impl Notices {
     }
 
     /// Notes that a motion of an axis is called, or ended for `None`; returns the previous one.
-    pub(crate) fn moves(&mut self, axis: AxisId, called: Option<Called>) -> Option<Called> {
+    pub(crate) fn moves(&mut self, axis: AxisId, called: Option<MotionCall>) -> Option<MotionCall> {
         std::mem::replace(&mut self.moves[axis.index()], called)
     }
 
     /// Notes that a thread polls the motion of an axis.
     pub(crate) fn asks(&mut self, thread: ThreadId, axis: AxisId) {
         if let Some(called) = &mut self.moves[axis.index()] {
-            called.is_asked |= called.thread == thread;
+            called.is_polled |= called.thread == thread;
         }
     }
 
     /// A program with these named objects is loaded.
-    pub(crate) fn load(&mut self, thread: ThreadId, objects: Arc<[Named]>) {
+    pub(crate) fn load(&mut self, thread: ThreadId, objects: Arc<[NamedObject]>) {
         self.objects[thread.index()] = objects;
     }
 
@@ -167,7 +167,7 @@ impl Notices {
     }
 
     /// The object in which a range of bytes begins, if the range exceeds it.
-    pub(crate) fn overrun(&self, to: GuestAddr, size: usize) -> Option<&Named> {
+    pub(crate) fn overrun(&self, to: GuestAddr, size: usize) -> Option<&NamedObject> {
         let begin = u64::from(to.get());
         let end = begin + size as u64;
         self.objects.iter().flat_map(|objects| objects.iter()).find(|object| {

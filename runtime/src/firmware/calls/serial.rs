@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use kmotiondef::variables::{P_RS232_TX_IN, P_RS232_TX_OUT};
 use vm::memory::GuestMemory;
 
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use chips::uart::Uart;
 
 /// The serial service, which a program starts.

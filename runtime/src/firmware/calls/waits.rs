@@ -3,7 +3,7 @@
 //! A thread waits as long as it calls only functions that poll or let time pass. Any other call ends the wait.
 
 use kmotiondef::firmware::FirmwareFunction;
-use kmotiondef::function::Polled;
+use kmotiondef::function::PolledState;
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, ThreadId};
 use vm::firmware::Caller;
 
@@ -15,9 +15,9 @@ const MANY_LOOKS: u32 = 100;
 
 /// A call that a thread repeats while it waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Repeated {
+pub(crate) struct RepeatedCall {
     /// The state that it polls.
-    pub(crate) polls: Polled,
+    pub(crate) polls: PolledState,
     /// Its first argument.
     pub(crate) argument: i32,
     /// The code address of the call.
@@ -26,7 +26,7 @@ pub(crate) struct Repeated {
     pub(crate) since: Cycles,
 }
 
-impl Repeated {
+impl RepeatedCall {
     fn is_as(&self, other: &Self) -> bool {
         (self.polls, self.argument, self.at) == (other.polls, other.argument, other.at)
     }
@@ -53,7 +53,7 @@ pub(crate) struct Wait {
     /// The bit that it has read last.
     pub(crate) last_bit: Option<Bit>,
     /// The calls since its beginning.
-    pub(crate) calls: Vec<Repeated>,
+    pub(crate) calls: Vec<RepeatedCall>,
     /// The function of the firmware's table that it has called before its beginning.
     pub(crate) called: Option<&'static FirmwareFunction>,
 }
@@ -68,20 +68,21 @@ pub(crate) struct Waits {
 
 impl Waits {
     /// Notes that a thread polls something or lets time pass.
-    pub(crate) fn look(&mut self, thread: ThreadId, polls: Polled, caller: &Caller<'_>) {
+    pub(crate) fn look(&mut self, thread: ThreadId, polls: PolledState, caller: &Caller<'_>) {
         let wait = &mut self.threads[thread.index()];
         wait.looked = caller.now();
-        wait.looks = wait.looks.wrapping_add(if polls == Polled::Time { 1 } else { MANY_LOOKS });
-        let call = Repeated { polls, argument: caller.arguments.get(0), at: caller.at, since: caller.now() };
+        wait.looks = wait.looks.wrapping_add(if polls == PolledState::Time { 1 } else { MANY_LOOKS });
+        let call =
+            RepeatedCall { polls, argument: caller.arguments.get(0), at: caller.at, since: caller.now() };
         match polls {
-            Polled::Time => {}
-            Polled::Motion => wait.motion_looks = wait.motion_looks.wrapping_add(1),
-            Polled::Bit | Polled::Path | Polled::Recording | Polled::Lock => {
+            PolledState::Time => {}
+            PolledState::Motion => wait.motion_looks = wait.motion_looks.wrapping_add(1),
+            PolledState::Bit | PolledState::Path | PolledState::Recording | PolledState::Lock => {
                 wait.other_looks = wait.other_looks.wrapping_add(1);
             }
         }
         let is_known = wait.calls.iter().any(|known| known.is_as(&call));
-        if polls == Polled::Bit {
+        if polls == PolledState::Bit {
             wait.last_bit = Bit::new(call.argument);
             wait.reads = true;
             wait.repeats |= is_known;

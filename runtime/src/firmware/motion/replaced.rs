@@ -9,11 +9,11 @@ use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Cycles};
 use vm::firmware::Caller;
 
-use crate::firmware::calls::{Called, Commanded, Wait};
+use crate::firmware::calls::{CommandedMotion, MotionCall, Wait};
 use crate::firmware::parts::Parts;
 use crate::out::{Message, OtherPlace};
 use crate::servo::independent::has_motion;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// A thread that has polled the time more often waits for something.
 const DELAYS: u32 = 3;
@@ -23,8 +23,8 @@ const REST: f64 = 0.01;
 const HARDLY: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 20);
 
 /// A motion that the thread has begun and that is still in progress.
-struct Interrupted {
-    called: Called,
+struct InterruptedMotion {
+    called: MotionCall,
     dest: f64,
     is_at_start: bool,
     is_after_delay: bool,
@@ -36,40 +36,46 @@ pub(super) fn begins(
     caller: &Caller<'_>,
     axis: AxisId,
     function: Function,
-    motion: Commanded,
+    motion: CommandedMotion,
 ) {
-    let Some(Interrupted { called, dest, is_at_start, is_after_delay }) =
+    let Some(InterruptedMotion { called, dest, is_at_start, is_after_delay }) =
         interrupted(parts, caller, axis, Some(motion))
     else {
         return;
     };
     let message = match (called.motion, motion) {
         _ if !is_at_start && !is_after_delay => return,
-        (Commanded::Move(earlier) | Commanded::MoveRel(_, earlier), Commanded::MoveRel(way, target))
-            if is_at_start =>
-        {
+        (
+            CommandedMotion::Move(earlier) | CommandedMotion::MoveRel(_, earlier),
+            CommandedMotion::MoveRel(way, target),
+        ) if is_at_start => {
             let [earlier, way, dest, target] = [earlier, way, dest, target].map(rounded);
             Message::RelativeReplaced { function, axis, earlier, way, dest, target }
         }
-        (Commanded::Move(earlier) | Commanded::MoveRel(_, earlier), Commanded::Move(target))
-            if is_at_start && earlier != target =>
-        {
+        (
+            CommandedMotion::Move(earlier) | CommandedMotion::MoveRel(_, earlier),
+            CommandedMotion::Move(target),
+        ) if is_at_start && earlier != target => {
             let effect = format!("replaced by one to {}", rounded(target));
             Message::MoveReplaced { function, axis, earlier: rounded(earlier), effect }
         }
-        (Commanded::Move(earlier) | Commanded::MoveRel(_, earlier), Commanded::Jog(_)) if is_at_start => {
+        (CommandedMotion::Move(earlier) | CommandedMotion::MoveRel(_, earlier), CommandedMotion::Jog(_))
+            if is_at_start =>
+        {
             let effect = "replaced by a jog".to_owned();
             Message::MoveReplaced { function, axis, earlier: rounded(earlier), effect }
         }
-        (Commanded::Jog(speed), Commanded::Move(_) | Commanded::MoveRel(..)) if is_at_start => {
+        (CommandedMotion::Jog(speed), CommandedMotion::Move(_) | CommandedMotion::MoveRel(..))
+            if is_at_start =>
+        {
             Message::JogReplaced { function, axis, speed, effect: "replaced by a move" }
         }
-        (Commanded::Jog(speed), Commanded::Jog(other)) if is_at_start && speed * other < 0.0 => {
+        (CommandedMotion::Jog(speed), CommandedMotion::Jog(other)) if is_at_start && speed * other < 0.0 => {
             Message::JogReplaced { function, axis, speed, effect: "replaced by one in the other direction" }
         }
         (
-            Commanded::Move(earlier) | Commanded::MoveRel(_, earlier),
-            Commanded::Move(target) | Commanded::MoveRel(_, target),
+            CommandedMotion::Move(earlier) | CommandedMotion::MoveRel(_, earlier),
+            CommandedMotion::Move(target) | CommandedMotion::MoveRel(_, target),
         ) if is_after_delay && earlier != target && called.at != caller.at => {
             let Some(at) = called.at else { return };
             let other = OtherPlace { thread: Some(called.thread), at };
@@ -82,7 +88,7 @@ pub(super) fn begins(
 
 /// Makes a remark if a thread ends the motion of an axis before the axis has moved noticeably.
 pub(super) fn ends(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function) {
-    let Some(Interrupted { called, dest, is_at_start, is_after_delay }) =
+    let Some(InterruptedMotion { called, dest, is_at_start, is_after_delay }) =
         interrupted(parts, caller, axis, None)
     else {
         return;
@@ -90,11 +96,13 @@ pub(super) fn ends(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, functio
     let disables = function == Function::DisableAxis;
     let effect = if disables { "ended" } else { "stopped" };
     let message = match called.motion {
-        Commanded::Move(earlier) | Commanded::MoveRel(_, earlier) if is_at_start => {
+        CommandedMotion::Move(earlier) | CommandedMotion::MoveRel(_, earlier) if is_at_start => {
             Message::MoveReplaced { function, axis, earlier: rounded(earlier), effect: effect.to_owned() }
         }
-        Commanded::Jog(speed) if is_at_start => Message::JogReplaced { function, axis, speed, effect },
-        Commanded::Move(earlier) | Commanded::MoveRel(_, earlier) if is_after_delay && disables => {
+        CommandedMotion::Jog(speed) if is_at_start => Message::JogReplaced { function, axis, speed, effect },
+        CommandedMotion::Move(earlier) | CommandedMotion::MoveRel(_, earlier)
+            if is_after_delay && disables =>
+        {
             Message::MoveEnded { function, axis, dest, earlier: rounded(earlier) }
         }
         _ => return,
@@ -107,25 +115,25 @@ fn interrupted(
     parts: &mut Parts,
     caller: &Caller<'_>,
     axis: AxisId,
-    motion: Option<Commanded>,
-) -> Option<Interrupted> {
+    motion: Option<CommandedMotion>,
+) -> Option<InterruptedMotion> {
     let thread = caller.thread?;
     let Wait { looked, looks, motion_looks, other_looks, .. } = *parts.calls.waits.of(thread);
     let memory = &*caller.memory;
     let dest = memory.axis(axis, Chan::DEST);
     let (at, now) = (caller.at, caller.now());
     let is_asked = false;
-    let own = motion.map(|motion| Called {
+    let own = motion.map(|motion| MotionCall {
         thread,
         at,
         motion,
         dest,
         called: now,
-        looked,
-        looks,
-        motion_looks,
-        other_looks,
-        is_asked,
+        last_poll: looked,
+        poll_count: looks,
+        motion_polls: motion_looks,
+        other_polls: other_looks,
+        is_polled: is_asked,
     });
     let called = parts.calls.notices.moves(axis, own)?;
     let is_enabled = memory.axis(axis, Chan::ENABLE) != 0;
@@ -134,20 +142,20 @@ fn interrupted(
     }
     let gone = (dest - called.dest).abs();
     let (is_near, is_far) = match called.motion {
-        Commanded::Move(target) | Commanded::MoveRel(_, target) => {
+        CommandedMotion::Move(target) | CommandedMotion::MoveRel(_, target) => {
             let way = (target - called.dest).abs();
             (gone <= f64::max(1.0, REST * way), (target - dest).abs() > REST * way)
         }
-        Commanded::Jog(_) => (gone <= 1.0, false),
+        CommandedMotion::Jog(_) => (gone <= 1.0, false),
     };
-    let is_at_start = called.looked == looked && is_near && now - called.called < HARDLY;
+    let is_at_start = called.last_poll == looked && is_near && now - called.called < HARDLY;
     let is_move = memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get();
-    let is_delay = (1..=DELAYS).contains(&looks.wrapping_sub(called.looks));
+    let is_delay = (1..=DELAYS).contains(&looks.wrapping_sub(called.poll_count));
     // It has only waited for other axes.
     let is_forgotten =
-        !called.is_asked && called.motion_looks != motion_looks && called.other_looks == other_looks;
+        !called.is_polled && called.motion_polls != motion_looks && called.other_polls == other_looks;
     let is_after_delay = (is_delay || is_forgotten) && is_far && is_move;
-    Some(Interrupted { called, dest, is_at_start, is_after_delay })
+    Some(InterruptedMotion { called, dest, is_at_start, is_after_delay })
 }
 
 /// A place or distance in thousandths.

@@ -13,13 +13,13 @@ use super::super::parts::Parts;
 use super::no_limits;
 use crate::machine::Drive;
 use crate::out::Message;
-use crate::servo::cache::Change;
+use crate::servo::cache::Invalidation;
 use crate::servo::independent::{start, state, write};
 use crate::servo::input::turn_resolver;
 use crate::servo::moves::limits;
 use crate::servo::profile::{self, MAX_STATES, MotionState, Ramp};
 use crate::servo::{four_phase, three_phase};
-use crate::views::{Typed, axis_at};
+use crate::views::{TypedAccess, axis_at};
 
 /// The axis to whose structure a program's pointer leads.
 fn pointed(parts: &mut Parts, caller: &Caller<'_>, function: Function, chan: GuestAddr) -> Option<AxisId> {
@@ -116,7 +116,7 @@ pub(crate) fn write_4ph(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestA
 /// Applies a vector to the phases: the rotor of a disabled axis turns; on an enabled axis the servo overrides it.
 fn apply(parts: &mut Parts, memory: &GuestMemory, axis: AxisId, v: f32, angle: f64) {
     if memory.axis(axis, Chan::ENABLE) == 0 {
-        parts.servo.cache.invalidate(Change::Motion);
+        parts.servo.cache.invalidate(Invalidation::Motion);
         parts.machine.loads[axis].drive = Drive::Vector(f64::from(v), angle);
     }
 }

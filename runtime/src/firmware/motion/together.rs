@@ -8,14 +8,14 @@ use vm::firmware::{Caller, Outcome, Wake};
 
 use super::schedule::{self, PlanningStage, row_cost};
 use super::{FARTHEST, is_beyond, is_number, may_move, no_limits, replaced};
-use crate::firmware::calls::{Commanded, Continuation};
+use crate::firmware::calls::{CommandedMotion, Continuation};
 use crate::firmware::parts::Parts;
 use crate::firmware::{axis_check, costs};
 use crate::out::Message;
 use crate::servo::coordinated::system;
 use crate::servo::moves::{Planner, limits, start_move_to};
 use crate::servo::planning;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The letters of `MoveXYZABC`.
 const LETTERS: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
@@ -82,7 +82,7 @@ fn step(
             costs::spend(caller, costs::REFUSED);
             return None;
         }
-        replaced::begins(parts, caller, axis, function, Commanded::Move(target));
+        replaced::begins(parts, caller, axis, function, CommandedMotion::Move(target));
         axis_check::moved(parts, caller, function, axis);
         axis_check::target_beyond(parts, caller, function, axis, target);
     }
@@ -130,7 +130,7 @@ fn all_at_once(parts: &mut Parts, caller: &mut Caller<'_>, targets: [f64; 6]) ->
     notice_letters(parts, caller, targets);
     for (axis, target) in moves {
         if may_move(parts, caller, axis, function) && is_number(parts, caller, function, target) {
-            replaced::begins(parts, caller, axis, function, Commanded::Move(target));
+            replaced::begins(parts, caller, axis, function, CommandedMotion::Move(target));
             axis_check::moved(parts, caller, function, axis);
             axis_check::target_beyond(parts, caller, function, axis, target);
             let target = target.clamp(-FARTHEST, FARTHEST);

@@ -27,7 +27,7 @@ use std::sync::Arc;
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::{CHAN, PERSIST, USER_CALL_BACK, cell_name, variable_around};
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId};
-use vm::firmware::{Repeats, SharedAccess};
+use vm::firmware::{RepeatPolicy, SharedAccess};
 use vm::memory::GuestMemory;
 use vm::thread::{Progress, ThreadState, Threads};
 
@@ -35,8 +35,8 @@ use self::locks::{Lock, LockSet, Orders};
 use self::records::JointReads;
 use self::reports::Reports;
 use self::table::Cells;
-use self::wakes::{Paused, Resumed};
-use crate::firmware::calls::Named;
+use self::wakes::{PausedThread, ResumeCall};
+use crate::firmware::calls::NamedObject;
 use crate::out::{Message, OtherPlace, Out};
 
 /// The seven threads, and before them the call-back.
@@ -90,8 +90,8 @@ struct Track {
     last_load: Option<(u32, Cycles)>,
     last_store: Option<u32>,
     /// The place where it paused itself, and the place where another resumed it, after which cell.
-    paused: Option<Paused>,
-    resumed: Option<Resumed>,
+    paused: Option<PausedThread>,
+    resumed: Option<ResumeCall>,
 }
 
 /// A resource that exists once on the board; its second user takes it from the first.
@@ -136,7 +136,7 @@ pub(crate) struct Races {
     /// True if the order of accesses has changed since the last query.
     is_reordered: bool,
     /// The named objects of the programs that are loaded.
-    objects: [Arc<[Named]>; ThreadId::MAX as usize],
+    objects: [Arc<[NamedObject]>; ThreadId::MAX as usize],
 }
 
 impl Default for Races {
@@ -190,7 +190,7 @@ impl Races {
     }
 
     /// A program with these named objects is loaded.
-    pub(crate) fn load(&mut self, thread: ThreadId, objects: Arc<[Named]>) {
+    pub(crate) fn load(&mut self, thread: ThreadId, objects: Arc<[NamedObject]>) {
         self.objects[thread.index()] = objects;
     }
 
@@ -213,7 +213,7 @@ impl Races {
         access: &SharedAccess<'_>,
         memory: &GuestMemory,
         out: &mut Out,
-    ) -> Repeats {
+    ) -> RepeatPolicy {
         let actor = Actor { thread: access.thread, at: access.at, now: access.now };
         let is_block = access.size > 8;
         let (size, count) = if !is_block { (access.size, 1) } else { (4, access.size / 4) };
@@ -238,7 +238,11 @@ impl Races {
             }
             self.loaded(actor, (address, size), value, out);
         }
-        if is_block || self.may_tell_more(access, address) { Repeats::Reported } else { Repeats::Redundant }
+        if is_block || self.may_tell_more(access, address) {
+            RepeatPolicy::Reported
+        } else {
+            RepeatPolicy::Redundant
+        }
     }
 
     /// Returns whether repeating an access in the same slice can give new information: values that belong together are

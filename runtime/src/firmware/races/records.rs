@@ -44,14 +44,14 @@ struct Part {
 pub(super) struct JointReads {
     parts: Vec<Part>,
     /// The pairs that it has read half changed, or could have.
-    found: Vec<Half>,
+    found: Vec<TornRead>,
     /// The number of times that it has read each pair of cells that another context changes together.
     pairs: BTreeMap<[u32; 2], u32>,
 }
 
 /// Something that was read half changed, or could have been.
 #[derive(Clone, Debug)]
-struct Half {
+struct TornRead {
     actor: Actor,
     cell: u32,
     size: u32,
@@ -104,7 +104,7 @@ impl Races {
         let is_seen = older.is_some();
         if is_seen || self.is_record(own, by, [part.address, address], &before) {
             let other = OtherPlace { thread: context(by), at };
-            self.found_half(own, Half { actor, cell: address, size, other, is_seen }, out);
+            self.found_half(own, TornRead { actor, cell: address, size, other, is_seen }, out);
         }
     }
 
@@ -134,11 +134,11 @@ impl Races {
         if !self.reports.knows(actor.at, at) {
             let other = OtherPlace { thread: context(by), at };
             let is_seen = false;
-            self.found_half(own, Half { actor, cell: address, size: 4, other, is_seen }, out);
+            self.found_half(own, TornRead { actor, cell: address, size: 4, other, is_seen }, out);
         }
     }
 
-    fn found_half(&mut self, own: usize, half: Half, out: &mut Out) {
+    fn found_half(&mut self, own: usize, half: TornRead, out: &mut Out) {
         self.tracks[own].reading.found.push(half);
         if self.tracks[own].reading.found.len() > MOST {
             self.settle(own, out);
@@ -147,7 +147,8 @@ impl Races {
 
     /// Notes that a context uses a value that it has read.
     pub(super) fn settle(&mut self, own: usize, out: &mut Out) {
-        for Half { actor, cell, size, other, is_seen } in std::mem::take(&mut self.tracks[own].reading.found)
+        for TornRead { actor, cell, size, other, is_seen } in
+            std::mem::take(&mut self.tracks[own].reading.found)
         {
             let cell = self.name_of(cell, size);
             if is_seen {

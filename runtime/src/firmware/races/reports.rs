@@ -18,7 +18,7 @@ type PlacePair = (CodeAddr, CodeAddr);
 
 /// A report that waits.
 #[derive(Clone, Debug)]
-struct Waiting {
+struct PendingReport {
     actor: Actor,
     message: Message,
 }
@@ -27,7 +27,7 @@ struct Waiting {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Reports {
     made: BTreeSet<PlacePair>,
-    waiting: BTreeMap<PlacePair, Waiting>,
+    waiting: BTreeMap<PlacePair, PendingReport>,
     /// The time at which the first waiting report is made.
     due: Option<Cycles>,
 }
@@ -61,7 +61,7 @@ impl Reports {
     fn wait(&mut self, actor: Actor, other: CodeAddr, message: Message) {
         let places = places(actor.at, other);
         if !self.suspects(actor.at, other) {
-            self.waiting.insert(places, Waiting { actor, message });
+            self.waiting.insert(places, PendingReport { actor, message });
             self.due.get_or_insert(actor.now + PATIENCE);
         }
     }
@@ -76,7 +76,7 @@ impl Reports {
     /// Makes the reports that wait.
     pub(super) fn flush(&mut self, out: &mut Out) {
         self.due = None;
-        for (places, Waiting { actor, message }) in std::mem::take(&mut self.waiting) {
+        for (places, PendingReport { actor, message }) in std::mem::take(&mut self.waiting) {
             self.made.insert(places);
             out.remark_of(actor.now, Speaker::from(actor.thread), Some(actor.at), message);
         }

@@ -10,14 +10,14 @@ use crate::out::{Message, OtherPlace, Out};
 
 /// A thread that has paused itself soon after it had loaded a cell.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Paused {
+pub(super) struct PausedThread {
     cell: u32,
     actor: Actor,
 }
 
 /// The last call that resumed a thread, and the cell that its caller had stored before.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Resumed {
+pub(super) struct ResumeCall {
     cell: u32,
     by: usize,
     at: CodeAddr,
@@ -28,7 +28,7 @@ impl Races {
     pub(crate) fn pauses(&mut self, actor: Actor, out: &mut Out) {
         let own = index(actor.thread);
         let tested = self.tracks[own].last_load.filter(|(_, then)| actor.now - *then < CLAIM_TIME);
-        self.tracks[own].paused = tested.map(|(cell, _)| Paused { cell, actor });
+        self.tracks[own].paused = tested.map(|(cell, _)| PausedThread { cell, actor });
         self.overtaken(own, out);
     }
 
@@ -36,7 +36,7 @@ impl Races {
     pub(crate) fn resumes(&mut self, actor: Actor, resumed: ThreadId, out: &mut Out) {
         let (by, own) = (index(actor.thread), index(Some(resumed)));
         let stored = self.tracks[by].last_store.filter(|_| by != own);
-        self.tracks[own].resumed = stored.map(|cell| Resumed { cell, by, at: actor.at });
+        self.tracks[own].resumed = stored.map(|cell| ResumeCall { cell, by, at: actor.at });
         self.overtaken(own, out);
     }
 

@@ -30,7 +30,7 @@ const BOOT_SECTOR: u32 = 0x1_0000;
 /// The bank of an address was not selected, because it contains the boot sector; the board prints a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
-pub(crate) struct Refused;
+pub(crate) struct BankRefused;
 
 /// The selected bank; without a chip where all of flash is visible.
 #[derive(Clone, Debug, Default)]
@@ -48,7 +48,7 @@ impl Banks {
     }
 
     /// Selects the bank of an address. The boot sector is refused, and the users' first bank is selected in its place.
-    pub(crate) fn select(&mut self, address: GuestAddr, memory: &mut GuestMemory) -> Result<(), Refused> {
+    pub(crate) fn select(&mut self, address: GuestAddr, memory: &mut GuestMemory) -> Result<(), BankRefused> {
         let address = address.get();
         let offset = address % FLASH.size;
         // A program may select the addresses of the chip's commands there; for other addresses it gets the user half.
@@ -58,7 +58,7 @@ impl Banks {
             self.show(memory);
         }
         let bank = address & BANK_BITS;
-        if is_refused && self.refused.replace(bank) != Some(bank) { Err(Refused) } else { Ok(()) }
+        if is_refused && self.refused.replace(bank) != Some(bank) { Err(BankRefused) } else { Ok(()) }
     }
 
     /// Runs an action that needs all of flash at its addresses.
@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(memory.peek::<u8>(user.offset(1)), 0xFF);
         assert_eq!(banks.chip().map(|bytes| bytes[0x10_7FFF..0x10_8002].to_vec()), Some(vec![7, 7, 0xFF]));
         // The boot sector shows the users' first bank.
-        assert_eq!(banks.select(FLASH.base, &mut memory), Err(Refused));
+        assert_eq!(banks.select(FLASH.base, &mut memory), Err(BankRefused));
         assert_eq!(look(&memory), [7; 3]);
         assert_eq!(banks.select(FLASH.base.offset(2), &mut memory), Ok(()));
     }

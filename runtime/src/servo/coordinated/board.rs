@@ -10,7 +10,7 @@ use super::system;
 use crate::machine::Lines;
 use crate::out::Message;
 use crate::servo::state::Tick;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 impl Bits for Lines<'_> {
     fn is_high(&mut self, memory: &GuestMemory, bit: Bit) -> bool {

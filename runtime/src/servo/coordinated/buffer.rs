@@ -15,7 +15,7 @@ use super::{rate, system};
 use crate::arithmetic::division::divide;
 use crate::arithmetic::doubles::log;
 use crate::out::Message;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The result of `ExecTime` instead of a time of 0 when nothing is executing.
 const IDLE: f64 = -0.001;

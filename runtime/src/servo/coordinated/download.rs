@@ -13,7 +13,7 @@ use super::buffer;
 use super::segment::{Command, Entry};
 use super::system::{self, LETTERS};
 use crate::out::Message;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The positions of the eight letters.
 pub(crate) type Point = [f32; LETTERS];

@@ -7,7 +7,7 @@ use kmotiondef::variables::{COORD_SYSTEM0, CS0_DECEL_TIME, CS0_STOPPING_STATE, C
 use vm::memory::GuestMemory;
 
 use super::{rate, system};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The minimum time for stopping a path, in seconds.
 const LEAST_STOPPING_TIME: f32 = 1e-6;

@@ -33,7 +33,7 @@ pub(crate) trait Bits {
 
 /// The state of coordinated motion between ticks, in addition to guest memory.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Coordinated {
+pub(crate) struct CoordinatedMotion {
     /// The last segment of a smoothed path, while it lasts.
     spline: Option<smoothing::Spline>,
 }

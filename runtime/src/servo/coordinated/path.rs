@@ -11,9 +11,9 @@ use vm::memory::GuestMemory;
 use super::feedhold::HoldState;
 use super::segment::{Command, Entry, Kind};
 use super::smoothing::{self, Spline};
-use super::{Bits, Coordinated, buffer, rate};
+use super::{Bits, CoordinatedMotion, buffer, rate};
 use crate::servo::spindle;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The time before its end at which a path that must not end yet is held, in seconds.
 const HELD_SHORT: f64 = 1e-6;
@@ -29,7 +29,7 @@ enum Halt {
     End(Entry),
 }
 
-impl Coordinated {
+impl CoordinatedMotion {
     /// Returns whether there is no path.
     #[inline]
     pub(crate) fn is_idle(&self, memory: &GuestMemory) -> bool {

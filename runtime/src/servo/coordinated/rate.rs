@@ -11,7 +11,7 @@ use kmotiondef::variables::{
 use vm::memory::GuestMemory;
 
 use super::feedhold::HoldState;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// The square of a tick's length, s².
 const TIMEBASE_SQUARED: f64 = 8.1e-9;

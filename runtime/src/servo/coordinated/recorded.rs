@@ -23,7 +23,7 @@ use super::segment::Command;
 use super::{buffer, system};
 use crate::testing::TestBench;
 use crate::text::vectors::rows;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Rows that were read in the middle of a slice, by the recording and its ticks: the primary thread had not yet stored
 /// the stop that it was computing. No program runs between this point and the next tick, so none can observe it.
@@ -31,7 +31,7 @@ const IN_SLICE: (&str, [u64; 2]) =
     ("limit switch action stop during buffer execution, resume into the limit", [3002, 6004]);
 
 /// A spindle turned by a recording: the axis whose position was written, its initial position and its counts per tick.
-struct Turning {
+struct RecordedSpindle {
     name: &'static str,
     axis: i32,
     offset: f64,
@@ -40,23 +40,23 @@ struct Turning {
     threads: Option<(u64, f32)>,
 }
 
-const SPINDLES: [Turning; 4] = [
-    Turning { name: "spindle speed measurement", axis: 0, offset: 0.0, counts: 0.9, threads: None },
-    Turning {
+const SPINDLES: [RecordedSpindle; 4] = [
+    RecordedSpindle { name: "spindle speed measurement", axis: 0, offset: 0.0, counts: 0.9, threads: None },
+    RecordedSpindle {
         name: "threading at the base speed",
         axis: 3,
         offset: 0.0,
         counts: 3.6864,
         threads: Some((301, 10.0)),
     },
-    Turning {
+    RecordedSpindle {
         name: "threading at half the base speed",
         axis: 3,
         offset: 100.0,
         counts: 1.8432,
         threads: Some((301, 10.0)),
     },
-    Turning {
+    RecordedSpindle {
         name: "threading, spindle turning backwards",
         axis: 3,
         offset: 0.0,
@@ -183,7 +183,7 @@ impl RecordedBoard {
     }
 
     /// Turns the spindle before a tick as in the recording.
-    fn turn(&mut self, spindle: &Turning, tick: u64, last: u64) -> Result<(), String> {
+    fn turn(&mut self, spindle: &RecordedSpindle, tick: u64, last: u64) -> Result<(), String> {
         let axis = AxisId::new(spindle.axis).ok_or("an axis")?;
         if tick < last {
             let position = spindle.offset + spindle.counts * tick as f64;

@@ -7,7 +7,7 @@ use vm::memory::GuestMemory;
 
 use super::system::LETTERS;
 use crate::arithmetic::doubles::sin;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Bytes of an entry.
 pub(crate) const SIZE: u32 = ParametricCoeff::SIZE;

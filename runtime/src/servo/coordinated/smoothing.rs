@@ -9,7 +9,7 @@ use vm::memory::GuestMemory;
 use super::segment::Entry;
 use super::system::LETTERS;
 use crate::arithmetic::division::divide;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Stores where the path puts an axis, and its destination after the filter.
 pub(crate) fn move_to(memory: &mut GuestMemory, axis: AxisId, position: f64) {

@@ -9,7 +9,7 @@ use kmotiondef::{AxisId, Place};
 use vm::memory::GuestMemory;
 
 use crate::arithmetic::division::{divide_singles, root};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// Letters of the coordinate system: x y z a b c u v.
 pub(crate) const LETTERS: usize = 8;

@@ -2,7 +2,7 @@
 
 use kmotiondef::Cycles;
 
-use crate::machine::attached::{Attached, Outside};
+use crate::machine::attached::{AttachedDevice, DeviceContext};
 use crate::world::attached::Settings;
 
 /// An echo.
@@ -16,8 +16,8 @@ impl Echo {
     }
 }
 
-impl Attached for Echo {
-    fn sent(&mut self, byte: u8, at: Cycles, outside: &mut Outside<'_>) {
+impl AttachedDevice for Echo {
+    fn sent(&mut self, byte: u8, at: Cycles, outside: &mut DeviceContext<'_>) {
         outside.uart.arrive(&[byte], at);
     }
 }

@@ -3,7 +3,7 @@
 use kmotiondef::Cycles;
 
 use crate::io::kanalog::COUNTS_PER_VOLT;
-use crate::machine::attached::{Attached, Outside};
+use crate::machine::attached::{AttachedDevice, DeviceContext};
 use crate::world::attached::Settings;
 use chips::kanalog::conversion;
 
@@ -23,8 +23,8 @@ impl KStepAnalog {
     }
 }
 
-impl Attached for KStepAnalog {
-    fn tick(&mut self, now: Cycles, outside: &mut Outside<'_>) {
+impl AttachedDevice for KStepAnalog {
+    fn tick(&mut self, now: Cycles, outside: &mut DeviceContext<'_>) {
         let output = outside.fpga.kstep_output();
         self.is_settled = output.is_settled(now);
         outside.kanalog.drive(self.adc, conversion(output.level(now) * self.supply * COUNTS_PER_VOLT));

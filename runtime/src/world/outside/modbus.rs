@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use kmotiondef::Cycles;
 
-use crate::machine::attached::{Attached, Outside};
+use crate::machine::attached::{AttachedDevice, DeviceContext};
 use crate::world::attached::Settings;
 
 /// Registers that one request may name.
@@ -100,8 +100,8 @@ impl Modbus {
     }
 }
 
-impl Attached for Modbus {
-    fn sent(&mut self, byte: u8, at: Cycles, outside: &mut Outside<'_>) {
+impl AttachedDevice for Modbus {
+    fn sent(&mut self, byte: u8, at: Cycles, outside: &mut DeviceContext<'_>) {
         if at - self.last > GAP {
             self.frame.clear();
         }

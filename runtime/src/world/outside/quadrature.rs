@@ -5,7 +5,7 @@
 
 use kmotiondef::{Axes, AxisId, Bit};
 
-use crate::machine::attached::{Attached, Outside};
+use crate::machine::attached::{AttachedDevice, DeviceContext};
 use crate::world::attached::Settings;
 use chips::changes::BitChange;
 
@@ -31,8 +31,8 @@ impl Quadrature {
     }
 }
 
-impl Attached for Quadrature {
-    fn edge(&mut self, change: BitChange, outside: &mut Outside<'_>) {
+impl AttachedDevice for Quadrature {
+    fn edge(&mut self, change: BitChange, outside: &mut DeviceContext<'_>) {
         let [a, b] = self.levels;
         let forward = if change.bit == self.a {
             self.levels[0] = change.level;

@@ -8,7 +8,7 @@ use kmotiondef::{Bit, Cycles};
 
 use crate::io::kanalog::COUNTS_PER_VOLT;
 use crate::io::konnect::{KonnectBoard, Port};
-use crate::machine::attached::{Attached, Outside};
+use crate::machine::attached::{AttachedDevice, DeviceContext};
 use crate::world::attached::Settings;
 use chips::changes::BitChange;
 use chips::kanalog::conversion;
@@ -89,8 +89,8 @@ impl Filter {
     }
 }
 
-impl Attached for Filter {
-    fn edge(&mut self, change: BitChange, _: &mut Outside<'_>) {
+impl AttachedDevice for Filter {
+    fn edge(&mut self, change: BitChange, _: &mut DeviceContext<'_>) {
         let Driver::Bits { high, low } = self.driver else { return };
         if change.bit == high {
             self.set(change.level, if low.is_some() { self.is_low } else { !change.level }, change.at);
@@ -107,7 +107,7 @@ impl Attached for Filter {
         }
     }
 
-    fn tick(&mut self, now: Cycles, outside: &mut Outside<'_>) {
+    fn tick(&mut self, now: Cycles, outside: &mut DeviceContext<'_>) {
         self.advance(now);
         self.shown = conversion(self.voltage * COUNTS_PER_VOLT);
         outside.kanalog.drive(self.adc, self.shown);

@@ -6,7 +6,7 @@
 
 use kmotiondef::{Axes, AxisId, Bit, Cycles};
 
-use crate::machine::attached::{Attached, Outside};
+use crate::machine::attached::{AttachedDevice, DeviceContext};
 use crate::world::attached::Settings;
 use chips::changes::BitChange;
 use chips::kanalog::conversion;
@@ -57,8 +57,8 @@ impl Resolver {
     }
 }
 
-impl Attached for Resolver {
-    fn edge(&mut self, change: BitChange, _: &mut Outside<'_>) {
+impl AttachedDevice for Resolver {
+    fn edge(&mut self, change: BitChange, _: &mut DeviceContext<'_>) {
         if change.bit == self.drive {
             self.advance(change.at);
             self.is_driven = change.level;
@@ -69,7 +69,7 @@ impl Attached for Resolver {
         bit == self.drive
     }
 
-    fn tick(&mut self, now: Cycles, outside: &mut Outside<'_>) {
+    fn tick(&mut self, now: Cycles, outside: &mut DeviceContext<'_>) {
         self.advance(now);
         let angle = outside.loads[self.axis].load / self.turn * std::f64::consts::TAU;
         let level = self.amplitude * self.field;

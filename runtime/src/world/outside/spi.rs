@@ -7,7 +7,7 @@
 
 use kmotiondef::Bit;
 
-use crate::machine::attached::{Attached, Outside};
+use crate::machine::attached::{AttachedDevice, DeviceContext};
 use crate::world::attached::Settings;
 use chips::changes::BitChange;
 
@@ -75,7 +75,7 @@ impl Spi {
         self.received = 0;
     }
 
-    fn show(&self, change: BitChange, outside: &mut Outside<'_>) {
+    fn show(&self, change: BitChange, outside: &mut DeviceContext<'_>) {
         outside.pins.drive(self.out, self.shift >> (u32::BITS - 1) != 0, change.at);
     }
 }
@@ -88,12 +88,12 @@ fn number(text: &str) -> Option<u32> {
     }
 }
 
-impl Attached for Spi {
+impl AttachedDevice for Spi {
     fn drives(&self) -> Option<Bit> {
         Some(self.out)
     }
 
-    fn edge(&mut self, change: BitChange, outside: &mut Outside<'_>) {
+    fn edge(&mut self, change: BitChange, outside: &mut DeviceContext<'_>) {
         if Some(change.bit) == self.input {
             self.input_level = change.level;
         }

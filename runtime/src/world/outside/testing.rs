@@ -6,8 +6,8 @@ use vm::memory::GuestMemory;
 
 use crate::io::{changes, kanalog};
 use crate::machine::Loads;
-use crate::machine::attached::{Attached, Outside};
-use crate::views::Typed;
+use crate::machine::attached::{AttachedDevice, DeviceContext};
+use crate::views::TypedAccess;
 use crate::world::attached::DeviceSpec;
 use chips::fpga::Fpga;
 use chips::kanalog::Kanalog;
@@ -16,7 +16,7 @@ use chips::uart::Uart;
 
 /// A device and its board.
 pub(crate) struct Bench {
-    pub(crate) device: Box<dyn Attached>,
+    pub(crate) device: Box<dyn AttachedDevice>,
     pub(crate) pins: Pins,
     pub(crate) kanalog: Kanalog,
     pub(crate) uart: Uart,
@@ -51,8 +51,8 @@ impl Bench {
         bench
     }
 
-    fn with<R>(&mut self, work: impl FnOnce(&mut dyn Attached, &mut Outside<'_>) -> R) -> R {
-        let mut outside = Outside {
+    fn with<R>(&mut self, work: impl FnOnce(&mut dyn AttachedDevice, &mut DeviceContext<'_>) -> R) -> R {
+        let mut outside = DeviceContext {
             pins: &mut self.pins,
             kanalog: &mut self.kanalog,
             uart: &mut self.uart,

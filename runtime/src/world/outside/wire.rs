@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use kmotiondef::{Bit, Cycles};
 
-use crate::machine::attached::{Attached, Outside};
+use crate::machine::attached::{AttachedDevice, DeviceContext};
 use crate::machine::description;
 use crate::world::attached::Settings;
 use chips::changes::BitChange;
@@ -41,12 +41,12 @@ impl Wire {
     }
 }
 
-impl Attached for Wire {
+impl AttachedDevice for Wire {
     fn drives(&self) -> Option<Bit> {
         Some(self.to)
     }
 
-    fn edge(&mut self, change: BitChange, outside: &mut Outside<'_>) {
+    fn edge(&mut self, change: BitChange, outside: &mut DeviceContext<'_>) {
         if change.bit != self.from {
             return;
         }
@@ -59,7 +59,7 @@ impl Attached for Wire {
         }
     }
 
-    fn tick(&mut self, now: Cycles, outside: &mut Outside<'_>) {
+    fn tick(&mut self, now: Cycles, outside: &mut DeviceContext<'_>) {
         if !self.is_connected {
             // It was not notified that its output is high.
             self.is_connected = true;

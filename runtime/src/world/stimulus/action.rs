@@ -43,12 +43,12 @@ type ActionReader = fn(&mut StatementReader<'_>) -> Result<Action, Mistake>;
 
 /// A form of an action as statements have it, and what reads it.
 #[derive(Debug)]
-struct Written {
+struct StatementForm {
     usage: &'static str,
     read: ActionReader,
 }
 
-impl Written {
+impl StatementForm {
     /// The word that it begins with.
     fn word(&self) -> &'static str {
         self.usage.split(' ').next().unwrap_or_default()
@@ -81,12 +81,12 @@ macro_rules! actions {
         }
 
         /// All forms of each action.
-        const WRITTEN: &[&[Written]] = &[$({
+        const WRITTEN: &[&[StatementForm]] = &[$({
             fn made(($first, $($operand),*): ($first_type, $($type),*)) -> Action {
                 Action::$name($first $(, $operand)*)
             }
-            const FORMS: &[Written] =
-                &[$(Written { usage: $usage, read: |reader| $read(reader).map(made) }),+];
+            const FORMS: &[StatementForm] =
+                &[$(StatementForm { usage: $usage, read: |reader| $read(reader).map(made) }),+];
             FORMS
         }),+];
 
@@ -282,7 +282,8 @@ pub(super) fn read(reader: &mut StatementReader<'_>) -> Result<Action, Mistake> 
     without_set(reader)?;
     let word = reader.peek().unwrap_or_default();
     let named = || WRITTEN.iter().copied().flatten().filter(|written| written.word() == word);
-    let Some(Written { read, .. }) = named().find(|written| written.fits(reader)).or_else(|| named().next())
+    let Some(StatementForm { read, .. }) =
+        named().find(|written| written.fits(reader)).or_else(|| named().next())
     else {
         return reader.expected(&words());
     };
@@ -294,13 +295,13 @@ pub(super) fn read(reader: &mut StatementReader<'_>) -> Result<Action, Mistake> 
 fn without_set(reader: &mut StatementReader<'_>) -> Result<(), Mistake> {
     let meant = reader.word(1).filter(|word| reader.peek() == Some("set") && *word != "bit");
     let meant = meant.and_then(|word| WRITTEN.iter().copied().flatten().find(|form| form.word() == word));
-    let Some(Written { usage, .. }) = meant else { return Ok(()) };
+    let Some(StatementForm { usage, .. }) = meant else { return Ok(()) };
     Err((reader.column(), format!("write `{usage}` without `set`")))
 }
 
 /// The words that actions begin with, for a message.
 fn words() -> String {
-    let mut words: Vec<_> = WRITTEN.iter().copied().flatten().map(Written::word).collect();
+    let mut words: Vec<_> = WRITTEN.iter().copied().flatten().map(StatementForm::word).collect();
     words.dedup();
     let (last, others) = words.split_last().expect("there are actions");
     let quoted: Vec<_> = others.iter().map(|word| format!("`{word}`")).collect();

@@ -14,7 +14,7 @@ const PRESSED: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 10);
 
 /// The reader of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Asker {
+pub(crate) struct InputReader {
     /// The thread; `None` for the call-back.
     pub(crate) thread: Option<ThreadId>,
     /// The instruction that reads.
@@ -25,7 +25,7 @@ pub(crate) struct Asker {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
     /// Toggles an input; who has read it last.
-    Press(Bit, Asker),
+    Press(Bit, InputReader),
     /// Gives it back the level it had.
     Release(Bit),
 }
@@ -34,7 +34,7 @@ pub(crate) enum Step {
 #[derive(Clone, Debug)]
 pub(crate) struct Assist {
     /// Inputs that were read since the last other action of the programs, and their readers.
-    polled: BTreeMap<Bit, Asker>,
+    polled: BTreeMap<Bit, InputReader>,
     /// The time of the next action.
     next: Cycles,
     pressed: Option<Bit>,
@@ -61,7 +61,7 @@ impl Assist {
     }
 
     /// A program has read an input.
-    pub(crate) fn polled(&mut self, bit: Bit, reader: Asker) {
+    pub(crate) fn polled(&mut self, bit: Bit, reader: InputReader) {
         self.polled.insert(bit, reader);
     }
 
@@ -95,7 +95,7 @@ impl Assist {
 mod tests {
     use super::*;
 
-    const ASKER: Asker = Asker { thread: None, at: None };
+    const ASKER: InputReader = InputReader { thread: None, at: None };
 
     fn ms(ms: i64) -> Cycles {
         Cycles::new(ms * Cycles::PER_SECOND.get() / 1000)

@@ -17,7 +17,7 @@ use super::relation::Relation;
 use super::scene::Scene;
 use super::tokens::Mistake;
 use crate::text::legible;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use crate::world::trace::{Formula, Item, View};
 
 /// A statement that a condition holds, or does not hold.
@@ -68,14 +68,14 @@ pub enum Subject {
     /// An item of the board, and its name in statements.
     Item(Item, Arc<str>),
     /// An element of `persist.UserData`, or two.
-    Persist(usize, Stored),
+    Persist(usize, UserDataFormat),
     /// A variable or an expression in the words of the programs.
     Expression(Expression),
 }
 
 /// The representation of a value in `persist.UserData`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stored {
+pub enum UserDataFormat {
     /// An integer.
     Whole,
     /// A `float`.
@@ -118,14 +118,14 @@ pub trait Facts {
 }
 
 /// The parts of a simulated board that expectations examine.
-pub(super) struct Look<'a> {
+pub(super) struct ExpectationContext<'a> {
     pub(super) view: View<'a>,
     pub(super) threads: ThreadSet,
     /// True if the text of this expectation was printed.
     pub(super) said: bool,
 }
 
-impl Facts for Look<'_> {
+impl Facts for ExpectationContext<'_> {
     fn value(&self, subject: &Subject) -> Option<f64> {
         subject.value(&self.view)
     }
@@ -145,7 +145,7 @@ impl Facts for Look<'_> {
 
 /// The result of an examination.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
+pub struct Examination {
     /// True if the expectation is met.
     pub is_met: bool,
     /// The actual and the expected value, as text.
@@ -154,7 +154,7 @@ pub struct Seen {
 
 impl Expectation {
     /// Examines the facts of an instant.
-    pub fn look(&self, facts: &impl Facts) -> Seen {
+    pub fn look(&self, facts: &impl Facts) -> Examination {
         let is_wanted = self.sense == Sense::Is;
         let (holds, was) = match &self.predicate {
             Predicate::Value { subject, relation, number, tolerance } => match facts.value(subject) {
@@ -184,7 +184,7 @@ impl Expectation {
         let is_met = holds == is_wanted;
         let hint = || reading::hint(self, |subject| facts.value(subject)).unwrap_or_default();
         let hint = if is_met { String::new() } else { hint() };
-        Seen { is_met, text: format!("{was}, expected {}{hint}", self.expected()) }
+        Examination { is_met, text: format!("{was}, expected {}{hint}", self.expected()) }
     }
 
     /// Returns the words that follow "expected" in messages.
@@ -259,9 +259,9 @@ impl Subject {
         let word = |index| view.memory.get(user_data.element(index)).cast_unsigned();
         match self {
             Self::Item(item, _) => Some(view.item(*item)),
-            Self::Persist(index, Stored::Whole) => Some(f64::from(word(*index).cast_signed())),
-            Self::Persist(index, Stored::Single) => Some(f64::from(f32::from_bits(word(*index)))),
-            Self::Persist(index, Stored::Double) => {
+            Self::Persist(index, UserDataFormat::Whole) => Some(f64::from(word(*index).cast_signed())),
+            Self::Persist(index, UserDataFormat::Single) => Some(f64::from(f32::from_bits(word(*index)))),
+            Self::Persist(index, UserDataFormat::Double) => {
                 let (low, high) = (u64::from(word(*index)), u64::from(word(*index + 1)));
                 Some(f64::from_bits(high << 32 | low))
             }
@@ -375,10 +375,10 @@ fn persist(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
     let last_double = kmotiondef::limits::N_USER_DATA_VARS - 2;
     let what = "an integer, a float such as f:1.25, or a double such as d:1.25";
     let (stored, number) = reader.take(what, |word| match word.split_once(':') {
-        Some(("f", float)) => Some((Stored::Single, f64::from(number(float)? as f32))),
-        Some(("d", double)) if index <= last_double => Some((Stored::Double, number(double)?)),
+        Some(("f", float)) => Some((UserDataFormat::Single, f64::from(number(float)? as f32))),
+        Some(("d", double)) if index <= last_double => Some((UserDataFormat::Double, number(double)?)),
         Some(_) => None,
-        None => Some((Stored::Whole, f64::from(integer(word)?))),
+        None => Some((UserDataFormat::Whole, f64::from(integer(word)?))),
     })?;
     let tolerance = reader.tolerance()?;
     Ok(Predicate::Value { subject: Subject::Persist(index, stored), relation, number, tolerance })

@@ -41,7 +41,9 @@ mod wave;
 
 pub use action::{Action, usages};
 pub use acts::manual::ManualStep;
-pub use expectation::{Expectation, Expression, Facts, Predicate, Seen, Sense, Stored, Subject};
+pub use expectation::{
+    Examination, Expectation, Expression, Facts, Predicate, Sense, Subject, UserDataFormat,
+};
 pub use plans::MOST_PLANNED;
 pub use relation::Relation;
 pub use text::StimulusError;
@@ -49,7 +51,7 @@ pub use trigger::{Condition, Edge, Trigger};
 pub use wave::Wave;
 
 pub(crate) use action::{Form, KEYS};
-pub(crate) use assist::{Asker, Assist, Step};
+pub(crate) use assist::{Assist, InputReader, Step};
 pub(crate) use player::Player;
 
 use std::fmt;

@@ -6,8 +6,8 @@
 use kmotiondef::Cycles;
 use vm::firmware::TickContext;
 
-use super::expectation::Look;
-use super::plans::Due;
+use super::expectation::ExpectationContext;
+use super::plans::DueEvent;
 use super::player::Player;
 use super::vacuous;
 use super::{Action, Condition, Expectation, Predicate, Rule, Sense, Trigger};
@@ -88,7 +88,7 @@ impl Player {
             let deadline = at + *limit;
             let progress = &mut self.progress[index];
             (progress.since, progress.said) = (Some(at), false);
-            self.plans.add(deadline, Due::Check);
+            self.plans.add(deadline, DueEvent::Check);
         }
     }
 
@@ -169,7 +169,8 @@ impl Player {
         expectation: &Expectation,
     ) -> (bool, String) {
         let view = View::new(access.machine, access.io, context.now, context.memory);
-        let look = Look { view, threads: context.threads.active(), said: self.progress[index].said };
+        let look =
+            ExpectationContext { view, threads: context.threads.active(), said: self.progress[index].said };
         let seen = expectation.look(&look);
         (seen.is_met, seen.text)
     }

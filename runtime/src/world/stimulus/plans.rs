@@ -14,7 +14,7 @@ pub const MOST_PLANNED: usize = 100_000;
 
 /// An event that is due at an instant.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Due {
+pub(super) enum DueEvent {
     /// A rule.
     Rule(usize),
     /// A pulse ends: the level before it.
@@ -27,7 +27,7 @@ pub(super) enum Due {
 
 /// Something that moves for a time.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Moved {
+pub(crate) enum MovingObject {
     /// The encoder on an input, by counts.
     Encoder(usize),
     /// The load of an axis, by units.
@@ -36,9 +36,9 @@ pub(crate) enum Moved {
 
 /// A motion in progress.
 #[derive(Clone, Copy, Debug)]
-struct Turning {
-    moved: Moved,
-    way: f64,
+struct TimedMotion {
+    moved: MovingObject,
+    distance: f64,
     begun: Cycles,
     over: Cycles,
     /// The distance already covered.
@@ -49,10 +49,10 @@ struct Turning {
 #[derive(Clone, Debug)]
 pub(crate) struct Plans {
     /// The pending events, by time and then in the order of planning.
-    due: BTreeMap<(Cycles, u64), Due>,
+    due: BTreeMap<(Cycles, u64), DueEvent>,
     count: u64,
     waves: [Option<(Wave, Cycles)>; ADC_CHANNELS],
-    turning: Vec<Turning>,
+    turning: Vec<TimedMotion>,
     /// The last analog value given to each input.
     converted: [i32; ADC_CHANNELS],
 }
@@ -71,19 +71,19 @@ impl Default for Plans {
 
 impl Plans {
     /// Adds an action that is due at a time.
-    pub(super) fn add(&mut self, at: Cycles, due: Due) {
+    pub(super) fn add(&mut self, at: Cycles, due: DueEvent) {
         self.due.insert((at, self.count), due);
         self.count += 1;
     }
 
     /// Plans the return of a bit to a level.
     pub(crate) fn level(&mut self, at: Cycles, bit: Bit, level: bool) {
-        self.add(at, Due::Level(bit, level));
+        self.add(at, DueEvent::Level(bit, level));
     }
 
     /// Plans the return of a bit to its switch.
     pub(crate) fn release(&mut self, at: Cycles, bit: Bit) {
-        self.add(at, Due::Release(bit));
+        self.add(at, DueEvent::Release(bit));
     }
 
     /// An analog input begins a course.
@@ -98,8 +98,8 @@ impl Plans {
     }
 
     /// An encoder or a load begins to move.
-    pub(crate) fn begin_turn(&mut self, moved: Moved, way: f64, over: Cycles, now: Cycles) {
-        self.turning.push(Turning { moved, way, begun: now, over, done: 0.0 });
+    pub(crate) fn begin_turn(&mut self, moved: MovingObject, way: f64, over: Cycles, now: Cycles) {
+        self.turning.push(TimedMotion { moved, distance: way, begun: now, over, done: 0.0 });
     }
 
     /// Drops the latest actions if too many are planned; returns whether it did.
@@ -112,17 +112,17 @@ impl Plans {
     }
 
     /// All planned actions.
-    pub(super) fn all(&self) -> impl Iterator<Item = Due> {
+    pub(super) fn all(&self) -> impl Iterator<Item = DueEvent> {
         self.due.values().copied()
     }
 
     /// Takes all planned actions.
-    pub(super) fn take_all(&mut self) -> impl Iterator<Item = Due> + use<> {
+    pub(super) fn take_all(&mut self) -> impl Iterator<Item = DueEvent> + use<> {
         std::mem::take(&mut self.due).into_values()
     }
 
     /// Takes the first event that is due now.
-    pub(super) fn take(&mut self, now: Cycles) -> Option<Due> {
+    pub(super) fn take(&mut self, now: Cycles) -> Option<DueEvent> {
         let entry = self.due.first_entry()?;
         (entry.key().0 <= now).then(|| entry.remove())
     }
@@ -155,11 +155,11 @@ impl Plans {
             let elapsed = context.now - turning.begun;
             let part =
                 if elapsed < turning.over { elapsed.get() as f64 / turning.over.get() as f64 } else { 1.0 };
-            let step = turning.way * part - turning.done;
+            let step = turning.distance * part - turning.done;
             turning.done += step;
             match turning.moved {
-                Moved::Load(axis) => access.machine.loads.push(axis, step),
-                Moved::Encoder(input) => {
+                MovingObject::Load(axis) => access.machine.loads.push(axis, step),
+                MovingObject::Encoder(input) => {
                     let WorldAccess { machine, out, now, .. } = &mut *access;
                     machine.turn_encoder(context.memory, out, input, step, *now);
                     if part >= 1.0 {

@@ -10,7 +10,7 @@ use vm::thread::Threads;
 
 use super::acts::lines::{drive, let_go};
 use super::monitor::Progress;
-use super::plans::{Due, MOST_PLANNED, Plans};
+use super::plans::{DueEvent, MOST_PLANNED, Plans};
 use super::scene::Scene;
 use super::{Action, Condition, Edge, Rule, Stimulus, Trigger};
 use super::{idle, reading};
@@ -84,7 +84,7 @@ impl Player {
                 matches!(rule.trigger, Trigger::At(time) if time <= access.now + Cycles::PER_TICK);
             match rule.trigger {
                 Trigger::At(time) | Trigger::Every { from: time, .. } => {
-                    self.plans.add(time, Due::Rule(index));
+                    self.plans.add(time, DueEvent::Rule(index));
                 }
                 Trigger::When { .. } | Trigger::Within { .. } | Trigger::Always { .. } | Trigger::End => {}
             }
@@ -117,12 +117,12 @@ impl Player {
     pub(crate) fn is_busy(&self, has_shown_lines: bool) -> bool {
         let awaits = self.awaits();
         let is_due = self.plans.all().any(|due| match due {
-            Due::Rule(index) => {
+            DueEvent::Rule(index) => {
                 let rule = &self.rules[index];
                 let is_endless = matches!(rule.trigger, Trigger::Every { .. });
                 (awaits && !is_endless) || rule.action.keeps_the_run()
             }
-            Due::Level(..) | Due::Release(_) | Due::Check => false,
+            DueEvent::Level(..) | DueEvent::Release(_) | DueEvent::Check => false,
         });
         is_due || (awaits && !(self.is_idle && has_shown_lines))
     }
@@ -166,12 +166,12 @@ impl Player {
         while let Some(due) = self.plans.take(context.now) {
             acted = true;
             match due {
-                Due::Level(bit, level) => drive(access, context, bit, level),
-                Due::Rule(index) => self.act(access, context, index),
-                Due::Release(bit) => {
+                DueEvent::Level(bit, level) => drive(access, context, bit, level),
+                DueEvent::Rule(index) => self.act(access, context, index),
+                DueEvent::Release(bit) => {
                     let_go(access, bit);
                 }
-                Due::Check => {}
+                DueEvent::Check => {}
             }
         }
         if acted {
@@ -268,7 +268,7 @@ impl Player {
             let was_due = self.progress[index].last_due;
             if fits(condition) && !(*is_once && was_due.is_some()) && was_due != Some(time) {
                 self.progress[index].last_due = Some(time);
-                self.plans.add(time, Due::Rule(index));
+                self.plans.add(time, DueEvent::Rule(index));
             }
         }
     }
@@ -280,7 +280,7 @@ impl Player {
             // Counted from the first, so that rounding to ticks does not add up.
             let next = from + Cycles::new(((now - from).get() / period.get() + 1) * period.get());
             if until.is_none_or(|until| next <= until) {
-                self.plans.add(next, Due::Rule(index));
+                self.plans.add(next, DueEvent::Rule(index));
             }
             if !is_so {
                 return;
@@ -328,8 +328,8 @@ impl Player {
         self.watch_lines();
         self.watch_threads(context);
         let late = self.plans.take_all().filter_map(|due| match due {
-            Due::Rule(index) => Some(index),
-            Due::Level(..) | Due::Release(_) | Due::Check => None,
+            DueEvent::Rule(index) => Some(index),
+            DueEvent::Level(..) | DueEvent::Release(_) | DueEvent::Check => None,
         });
         let mut checked: Vec<usize> = late.collect();
         checked.extend((0..self.rules.len()).filter(|&index| self.rules[index].trigger == Trigger::End));

@@ -5,12 +5,15 @@
 
 use kmotiondef::limits::N_USER_DATA_VARS;
 
-use super::expectation::{Expectation, Predicate, Sense, Stored, Subject};
+use super::expectation::{Expectation, Predicate, Sense, Subject, UserDataFormat};
 use super::relation::Relation;
 
 /// Every form, with the prefix of its numbers in a statement and its name.
-const FORMS: [(Stored, &str, &str); 3] =
-    [(Stored::Whole, "", "integer"), (Stored::Single, "f:", "float"), (Stored::Double, "d:", "double")];
+const FORMS: [(UserDataFormat, &str, &str); 3] = [
+    (UserDataFormat::Whole, "", "integer"),
+    (UserDataFormat::Single, "f:", "float"),
+    (UserDataFormat::Double, "d:", "double"),
+];
 
 /// The hint after the message of an expectation that would be met in another form of its element.
 pub(super) fn hint(expectation: &Expectation, value: impl Fn(&Subject) -> Option<f64>) -> Option<String> {
@@ -28,25 +31,25 @@ pub(super) fn hint(expectation: &Expectation, value: impl Fn(&Subject) -> Option
 }
 
 /// The element that a value is, and its form.
-fn element(subject: &Subject) -> Option<(usize, Stored)> {
+fn element(subject: &Subject) -> Option<(usize, UserDataFormat)> {
     match subject {
         Subject::Persist(index, stored) => Some((*index, *stored)),
-        Subject::Item(item, _) if item.kind() == "persist" => Some((item.index(), Stored::Whole)),
+        Subject::Item(item, _) if item.kind() == "persist" => Some((item.index(), UserDataFormat::Whole)),
         Subject::Item(..) | Subject::Expression(_) => None,
     }
 }
 
 /// Returns whether an element can have this form; two elements are a `double` by accident if only its size counts.
-fn fits(form: Stored, index: usize, relation: Relation) -> bool {
-    form != Stored::Double || (relation == Relation::Equal && index + 2 <= N_USER_DATA_VARS)
+fn fits(form: UserDataFormat, index: usize, relation: Relation) -> bool {
+    form != UserDataFormat::Double || (relation == Relation::Equal && index + 2 <= N_USER_DATA_VARS)
 }
 
 /// Returns whether a program has probably stored this value in this form.
-fn is_likely(form: Stored, value: f64) -> bool {
+fn is_likely(form: UserDataFormat, value: f64) -> bool {
     /// From here on an integer is also the bits of a `float` that is not denormal.
     const FIRST_FLOAT: f64 = 8_388_608.0;
     match form {
-        Stored::Whole => value.abs() < FIRST_FLOAT,
-        Stored::Single | Stored::Double => (1e-6..=1e9).contains(&value.abs()),
+        UserDataFormat::Whole => value.abs() < FIRST_FLOAT,
+        UserDataFormat::Single | UserDataFormat::Double => (1e-6..=1e9).contains(&value.abs()),
     }
 }

@@ -16,12 +16,12 @@ use super::relation::Relation;
 use super::trigger::Trigger;
 use crate::io::bits::range_of;
 use crate::machine::Channel;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use crate::world::trace::{Item, View};
 
 /// Something that an expectation of the whole run limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Limited {
+enum LimitedQuantity {
     Axis(AxisId),
     /// The position that an axis reads.
     Position(AxisId),
@@ -37,33 +37,35 @@ pub(super) fn cause(rules: &[Rule], progress: &[Progress], index: usize, view: &
         return None;
     }
     match limited(rules.get(index)?, view)? {
-        Limited::Position(axis) if is_used(axis, view) && view.memory.axis(axis, Chan::INPUT_MODE) == 0 => {
+        LimitedQuantity::Position(axis)
+            if is_used(axis, view) && view.memory.axis(axis, Chan::INPUT_MODE) == 0 =>
+        {
             let others = "`dest` is its target, `load` the place of its load";
             Some(format!("axis {axis} has no input and stays at position 0 ({others})"))
         }
-        Limited::Axis(axis) | Limited::Position(axis) => {
+        LimitedQuantity::Axis(axis) | LimitedQuantity::Position(axis) => {
             let others = || view.memory.axes().iter().filter(|other| *other != axis);
-            let limits_used = |(index, rule)| matches!(limited(rule, view), Some(Limited::Axis(other) | Limited::Position(other)) if varied(index) || is_used(other, view));
+            let limits_used = |(index, rule)| matches!(limited(rule, view), Some(LimitedQuantity::Axis(other) | LimitedQuantity::Position(other)) if varied(index) || is_used(other, view));
             let is_odd = !view.machine.has_axis(axis) || !rules.iter().enumerate().any(limits_used);
             let is_idle = !is_used(axis, view) && others().any(|other| is_used(other, view));
             (is_idle && is_odd).then(|| format!("axis {axis} is never used in this run"))
         }
-        Limited::Dac(number) => {
+        LimitedQuantity::Dac(number) => {
             let is_other = |channel| matches!(channel, Channel::Dac(other) if other != number);
             let is_odd = is_only_other(view, is_other, Channel::Dac(number));
             is_odd.then(|| format!("DAC {number} is never written in this run"))
         }
-        Limited::Pwm(number) => {
+        LimitedQuantity::Pwm(number) => {
             let is_other = |channel| matches!(channel, Channel::Pwm(other) if other != number);
             let is_odd = is_only_other(view, is_other, Channel::Pwm(number));
             is_odd.then(|| format!("PWM channel {number} is never written in this run"))
         }
-        Limited::Bit(bit) => idle_bit(bit, view),
+        LimitedQuantity::Bit(bit) => idle_bit(bit, view),
     }
 }
 
 /// Returns the part of the board that an expectation of the whole run limits.
-fn limited(rule: &Rule, view: &View<'_>) -> Option<Limited> {
+fn limited(rule: &Rule, view: &View<'_>) -> Option<LimitedQuantity> {
     let (Trigger::Always { .. }, Action::Expect(Expectation { predicate, .. })) =
         (&rule.trigger, &rule.action)
     else {
@@ -73,18 +75,18 @@ fn limited(rule: &Rule, view: &View<'_>) -> Option<Limited> {
         return None;
     };
     if let Some(bit) = item.bit() {
-        return Some(Limited::Bit(bit));
+        return Some(LimitedQuantity::Bit(bit));
     }
     let is_limit = !matches!(relation, Relation::Equal | Relation::Different) && *number != 0.0;
     is_limit.then(|| of_item(*item, view)).flatten()
 }
 
-fn of_item(item: Item, view: &View<'_>) -> Option<Limited> {
+fn of_item(item: Item, view: &View<'_>) -> Option<LimitedQuantity> {
     match item.kind() {
-        "pos" => axis_of(item, view).map(Limited::Position),
-        "dest" | "out" | "vel" | "load" => axis_of(item, view).map(Limited::Axis),
-        "dac" => Some(Limited::Dac(item.index())),
-        "pwm" => Some(Limited::Pwm(item.index())),
+        "pos" => axis_of(item, view).map(LimitedQuantity::Position),
+        "dest" | "out" | "vel" | "load" => axis_of(item, view).map(LimitedQuantity::Axis),
+        "dac" => Some(LimitedQuantity::Dac(item.index())),
+        "pwm" => Some(LimitedQuantity::Pwm(item.index())),
         _ => None,
     }
 }

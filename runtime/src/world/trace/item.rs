@@ -12,7 +12,7 @@ use super::{Formula, RecordedCell, View};
 use crate::io::bits::bit_state;
 use crate::io::kanalog::conversion;
 use crate::io::konnect::{KonnectBoard, Port};
-use crate::views::{self, Typed};
+use crate::views::{self, TypedAccess};
 
 /// A kind of value: a row of the table of kinds, which defines all of its properties.
 struct ItemKind {

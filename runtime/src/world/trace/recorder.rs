@@ -4,7 +4,7 @@ use kmotiondef::structs::Chan;
 use kmotiondef::{ThreadId, Ticks};
 
 use super::{Packets, Quantity, Record, TraceRequest, View};
-use crate::views::Typed;
+use crate::views::TypedAccess;
 
 /// A recording in progress.
 #[derive(Clone, Debug)]

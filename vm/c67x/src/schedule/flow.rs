@@ -57,7 +57,7 @@ impl Guard {
 
 /// A register that is still being read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Reading {
+struct PendingRead {
     reg: Reg,
     first: u32,
     last: u32,
@@ -65,7 +65,7 @@ struct Reading {
 
 /// A branch in flight; `None` if it leaves the code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Coming {
+struct PendingBranch {
     left: u32,
     target: Option<u32>,
     pred: Guard,
@@ -75,13 +75,13 @@ struct Coming {
 struct FlowState {
     at: u32,
     pending: Vec<Pending>,
-    readings: Vec<Reading>,
+    readings: Vec<PendingRead>,
     /// Results of units, with the number of cycles until they are written.
     ports: Vec<(Unit, u32, Guard)>,
     units: Vec<(Unit, u32)>,
     crosses: Vec<(Side, u32)>,
     multiplies: Vec<(Unit, Mnemonic, u32)>,
-    branches: Vec<Coming>,
+    branches: Vec<PendingBranch>,
     /// The number of cycles in which no interrupt can be taken.
     shadow: u32,
     /// The number of cycles since an interrupt could be taken.
@@ -215,8 +215,8 @@ impl FlowState {
     /// Checks for results in flight to the registers that the instruction reads.
     fn reads(&mut self, inst: &Inst, rules: &mut Vec<Rule>) {
         let guard = Guard::of(inst);
-        let condition = inst.pred().reg().map(|reg| Reading { reg, first: 0, last: 0 });
-        let sources = inst.reads().map(|read| Reading {
+        let condition = inst.pred().reg().map(|reg| PendingRead { reg, first: 0, last: 0 });
+        let sources = inst.reads().map(|read| PendingRead {
             reg: read.reg,
             first: u32::from(read.first) - 1,
             last: u32::from(read.last) - 1,
@@ -233,7 +233,7 @@ impl FlowState {
                 }
             }
         }
-        self.readings.extend(inst.reads().filter(|read| read.last > 1).map(|read| Reading {
+        self.readings.extend(inst.reads().filter(|read| read.last > 1).map(|read| PendingRead {
             reg: read.reg,
             first: u32::from(read.first) - 1,
             last: u32::from(read.last) - 1,
@@ -250,8 +250,9 @@ impl FlowState {
             if self.pending.iter().any(|other| same(&other)) {
                 rules.push(Rule::TwoResults(write.reg));
             }
-            let reading =
-                |reading: &Reading| reading.reg == write.reg && left > reading.first && left <= reading.last;
+            let reading = |reading: &PendingRead| {
+                reading.reg == write.reg && left > reading.first && left <= reading.last
+            };
             if self.readings.iter().any(reading) {
                 rules.push(Rule::ChangesDuringRead(write.reg));
             }
@@ -289,7 +290,7 @@ impl FlowState {
             Branch::Near { bytes } => Some(target(at, bytes)).filter(|target| code.contains(target)),
             Branch::Register(_) | Branch::Interrupt => None,
         };
-        self.branches.push(Coming { left: BRANCH, target, pred: Guard::of(inst) });
+        self.branches.push(PendingBranch { left: BRANCH, target, pred: Guard::of(inst) });
         self.shadow = BRANCH;
     }
 

@@ -9,10 +9,10 @@ use std::ops::RangeInclusive;
 
 use c67x::Inst;
 
-use super::super::decode::{DEFERRED, FORESEEN, Micro, Packet, STACK, STEADY, TRUE, UPDATES, ZERO};
+use super::super::decode::{DEFERRED, FORESEEN, MicroOp, Packet, STACK, STEADY, TRUE, UPDATES, ZERO};
 use super::super::pipeline::BRANCH;
 use super::super::work::Work;
-use super::renaming::{Decider, Flying, Jump, Landing, Renaming, Spares, Width};
+use super::renaming::{BranchCondition, EffectShape, PendingBranch, PendingResult, Renaming, Spares, Width};
 
 /// The limit of packets in a loop, counted once for each renaming.
 const MOST: usize = 512;
@@ -24,7 +24,7 @@ const SHADOW: u32 = 6 * 32;
 pub(super) struct RenamedPacket {
     pub(super) pc: u32,
     /// Its instructions, in the order in which they are executed.
-    pub(super) micros: Box<[Micro]>,
+    pub(super) micros: Box<[MicroOp]>,
     pub(super) cycles: u8,
     /// True if the loop is left before it.
     pub(super) is_exit: bool,
@@ -42,7 +42,7 @@ pub(super) struct RenamedPacket {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arrival {
     /// The condition; `None` for a branch that is always taken.
-    pub(super) decider: Option<Decider>,
+    pub(super) decider: Option<BranchCondition>,
     pub(super) to: u32,
     /// The packet of the branch, if it should be noted.
     pub(super) from: Option<u32>,
@@ -65,31 +65,36 @@ pub(super) struct Borders {
 
 /// A loop as planned.
 #[derive(Debug, Default)]
-pub(super) struct Planned {
+pub(super) struct LoopPlan {
     pub(super) packets: Vec<RenamedPacket>,
     pub(super) borders: Vec<Borders>,
 }
 
 /// A packet, and its instructions in the order in which they are executed.
-pub(super) type Found = Option<(Packet, Vec<(Inst, Micro)>)>;
+pub(super) type FoundPacket = Option<(Packet, Vec<(Inst, MicroOp)>)>;
 
 /// Finds the packet at an address.
-pub(super) type Find<'a> = dyn FnMut(u32) -> Found + 'a;
+pub(super) type PacketFinder<'a> = dyn FnMut(u32) -> FoundPacket + 'a;
 
 struct Planner<'a, 'f> {
-    find: &'a mut Find<'f>,
+    find: &'a mut PacketFinder<'f>,
     /// The addresses of the packets of the loop.
     range: RangeInclusive<u32>,
-    found: BTreeMap<u32, Found>,
+    found: BTreeMap<u32, FoundPacket>,
     spares: Spares,
-    planned: Planned,
+    planned: LoopPlan,
     known: BTreeMap<(u32, Renaming), u32>,
     open: VecDeque<u32>,
 }
 
 /// Plans the loop that is entered at `pc` with these effects in flight and ends with the branch in the packet at
 /// `last`; `None` if its first packet cannot be part of a loop.
-pub(super) fn plan(pc: u32, last: u32, flying: &[Flying], find: &mut Find<'_>) -> Option<Planned> {
+pub(super) fn plan(
+    pc: u32,
+    last: u32,
+    flying: &[EffectShape],
+    find: &mut PacketFinder<'_>,
+) -> Option<LoopPlan> {
     let mut spares = Spares::new();
     let entry = Renaming::at_entry(flying, &mut spares)?;
     let mut planner = Planner {
@@ -97,7 +102,7 @@ pub(super) fn plan(pc: u32, last: u32, flying: &[Flying], find: &mut Find<'_>) -
         range: pc..=last.saturating_add(SHADOW),
         found: BTreeMap::new(),
         spares,
-        planned: Planned::default(),
+        planned: LoopPlan::default(),
         known: BTreeMap::new(),
         open: VecDeque::new(),
     };
@@ -131,7 +136,7 @@ impl Borders {
 impl Planner<'_, '_> {
     /// The index of a packet with a renaming, which is filled in later.
     fn packet_at(&mut self, pc: u32, renaming: Renaming) -> u32 {
-        let Planned { packets, borders, .. } = &mut self.planned;
+        let LoopPlan { packets, borders, .. } = &mut self.planned;
         *self.known.entry((pc, renaming)).or_insert_with_key(|(pc, renaming)| {
             let index = packets.len() as u32;
             packets.push(RenamedPacket {
@@ -196,7 +201,7 @@ impl Planner<'_, '_> {
     fn follow(&mut self, packet: &Packet, mut renaming: Renaming) -> Option<(u8, u32, Option<Arrival>)> {
         renaming.sort();
         for cycle in 1..=packet.cycles {
-            let Some(Jump { target: pc, decider, from, .. }) = renaming.pass() else { continue };
+            let Some(PendingBranch { target: pc, decider, from, .. }) = renaming.pass() else { continue };
             let to = self.packet_at(pc, renaming.clone());
             if decider.is_none() {
                 return Some((cycle, to, Some(Arrival { decider, to, from, rest: 0 })));
@@ -217,8 +222,8 @@ impl Planner<'_, '_> {
         before: &Renaming,
         issued: &mut Renaming,
         inst: Inst,
-        micro: Micro,
-    ) -> Option<Micro> {
+        micro: MicroOp,
+    ) -> Option<MicroOp> {
         if inst.branch().is_some() {
             return self.branch(pc, before, issued, micro);
         }
@@ -255,33 +260,39 @@ impl Planner<'_, '_> {
             if reg & !1 != micro.dst & !1 || issued.has_result(due, reg) {
                 return None;
             }
-            issued.landings.push(Landing { due, reg, place: renamed.dst & !1 | reg & 1 });
+            issued.landings.push(PendingResult { due, reg, place: renamed.dst & !1 | reg & 1 });
         }
         Some(renamed)
     }
 
     /// Adds a branch; its executor keeps the value of the condition until the branch arrives.
-    fn branch(&mut self, pc: u32, before: &Renaming, issued: &mut Renaming, micro: Micro) -> Option<Micro> {
+    fn branch(
+        &mut self,
+        pc: u32,
+        before: &Renaming,
+        issued: &mut Renaming,
+        micro: MicroOp,
+    ) -> Option<MicroOp> {
         let due = BRANCH as u8;
         if micro.work != Work::BranchTo || issued.has_branch(due) {
             return None;
         }
-        let constant = Micro { pred: TRUE, inverted: false, a: ZERO, b: ZERO, dst: ZERO, imm: 0, ..micro };
+        let constant = MicroOp { pred: TRUE, inverted: false, a: ZERO, b: ZERO, dst: ZERO, imm: 0, ..micro };
         let (decider, renamed) = if micro.pred == TRUE {
-            (None, Micro { work: Work::Nop, ..constant })
+            (None, MicroOp { work: Work::Nop, ..constant })
         } else {
             let place = self.spares.find_decider(issued)?;
-            let copied = Micro { work: Work::Add, a: before.place(micro.pred), dst: place, ..constant };
-            (Some(Decider { place, inverted: micro.inverted }), copied)
+            let copied = MicroOp { work: Work::Add, a: before.place(micro.pred), dst: place, ..constant };
+            (Some(BranchCondition { place, inverted: micro.inverted }), copied)
         };
-        issued.jumps.insert(0, Jump { due, target: micro.imm, decider, from: Some(pc) });
+        issued.jumps.insert(0, PendingBranch { due, target: micro.imm, decider, from: Some(pc) });
         Some(renamed)
     }
 }
 
 /// The delays with which an instruction reads the high words of s1 and of s2; `None` if they may differ from the words
 /// in flight before its packet.
-fn later_reads(before: &Renaming, inst: Inst, micro: Micro) -> Option<[u8; 2]> {
+fn later_reads(before: &Renaming, inst: Inst, micro: MicroOp) -> Option<[u8; 2]> {
     if inst.reads().all(|read| read.first == 1) {
         return Some([0, 0]);
     }

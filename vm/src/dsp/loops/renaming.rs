@@ -13,7 +13,7 @@ const FIRST: u8 = 66;
 
 /// A result in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Landing {
+pub(super) struct PendingResult {
     /// Cycles until it lands.
     pub(super) due: u8,
     pub(super) reg: u8,
@@ -23,25 +23,25 @@ pub(super) struct Landing {
 
 /// A branch in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Jump {
+pub(super) struct PendingBranch {
     /// Cycles until it arrives.
     pub(super) due: u8,
     pub(super) target: u32,
     /// The condition; `None` for a branch that is always taken.
-    pub(super) decider: Option<Decider>,
+    pub(super) decider: Option<BranchCondition>,
     /// The packet of the branch; `None` if the state has noted it already.
     pub(super) from: Option<u32>,
 }
 
 /// The condition of a branch in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Decider {
+pub(super) struct BranchCondition {
     pub(super) place: u8,
     /// True if the branch is taken when that value is 0.
     pub(super) inverted: bool,
 }
 
-impl Decider {
+impl BranchCondition {
     #[inline(always)]
     pub(super) fn holds(self, places: &[u32; 256]) -> bool {
         (places[usize::from(self.place)] == 0) == self.inverted
@@ -53,17 +53,17 @@ impl Decider {
 pub(super) struct Renaming {
     /// The place of each register.
     map: [u8; REGS],
-    pub(super) landings: Vec<Landing>,
-    pub(super) jumps: Vec<Jump>,
+    pub(super) landings: Vec<PendingResult>,
+    pub(super) jumps: Vec<PendingBranch>,
     /// Cycles until an interrupt is possible, because of branches of the loop.
     held: u8,
 }
 
 /// An effect in flight: the cycles left, the register or [`REGS`], and the target of a branch.
-pub(super) type Flying = (u8, u8, u32);
+pub(super) type EffectShape = (u8, u8, u32);
 
 /// Lists the effects in flight in a state; `false` if a loop cannot begin with them.
-pub(super) fn list(state: &State, flying: &mut Vec<Flying>) -> bool {
+pub(super) fn list(state: &State, flying: &mut Vec<EffectShape>) -> bool {
     flying.clear();
     if state.flight.is_empty() {
         return true;
@@ -87,15 +87,15 @@ pub(super) fn list(state: &State, flying: &mut Vec<Flying>) -> bool {
 
 impl Renaming {
     /// All registers in their own places.
-    pub(super) fn at_entry(flying: &[Flying], places: &mut Spares) -> Option<Self> {
+    pub(super) fn at_entry(flying: &[EffectShape], places: &mut Spares) -> Option<Self> {
         let map = std::array::from_fn(|reg| reg as u8);
         let mut renaming = Self { map, landings: Vec::new(), jumps: Vec::new(), held: 0 };
         for &(due, reg, target) in flying {
             if usize::from(reg) == REGS {
-                renaming.jumps.push(Jump { due, target, decider: None, from: None });
+                renaming.jumps.push(PendingBranch { due, target, decider: None, from: None });
             } else {
                 let place = places.find(&renaming, reg, Width::Word)?;
-                renaming.landings.push(Landing { due, reg, place });
+                renaming.landings.push(PendingResult { due, reg, place });
             }
         }
         renaming.sort();
@@ -129,7 +129,7 @@ impl Renaming {
     }
 
     /// Lets a cycle pass; returns the branch that arrives at its end, if any.
-    pub(super) fn pass(&mut self) -> Option<Jump> {
+    pub(super) fn pass(&mut self) -> Option<PendingBranch> {
         self.held = self.held.saturating_sub(1);
         let map = &mut self.map;
         self.landings.retain_mut(|landing| {

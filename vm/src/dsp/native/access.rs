@@ -6,10 +6,10 @@ use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{Block, InstBuilder, Value, types};
 use kmotiondef::map::{IRAM, SDRAM};
 
-use super::super::decode::{AFTER, Micro, NEGATIVE, UPDATES, ZERO};
+use super::super::decode::{AFTER, MicroOp, NEGATIVE, UPDATES, ZERO};
 use super::super::work::Work;
 use super::packet::PacketState;
-use super::region::{Stopped, Translator, offset};
+use super::region::{NoNextPacket, Translator, offset};
 use crate::native::{Handover, MARK_BITS};
 
 impl Translator<'_, '_> {
@@ -17,9 +17,9 @@ impl Translator<'_, '_> {
     pub(super) fn address(
         &mut self,
         packet_state: &mut PacketState,
-        m: &Micro,
+        m: &MicroOp,
         [base, constant, register]: [Value; 3],
-    ) -> Result<Value, Stopped> {
+    ) -> Result<Value, NoNextPacket> {
         let mut sum = constant;
         if m.b != ZERO {
             let scaled = self.builder.ins().ishl_imm_u(register, i64::from(m.extra));
@@ -37,9 +37,9 @@ impl Translator<'_, '_> {
     pub(super) fn load(
         &mut self,
         packet_state: &mut PacketState,
-        m: &Micro,
+        m: &MicroOp,
         address: Value,
-    ) -> Result<(), Stopped> {
+    ) -> Result<(), NoNextPacket> {
         let address = self.align(address, m.extra);
         let pointer = self.pointer(packet_state, address, false);
         let guest = self.guest;
@@ -59,7 +59,7 @@ impl Translator<'_, '_> {
     }
 
     /// Stores a register, at the end of the packet.
-    pub(super) fn store(&mut self, packet_state: &mut PacketState, m: &Micro, address: Value) {
+    pub(super) fn store(&mut self, packet_state: &mut PacketState, m: &MicroOp, address: Value) {
         let value = self.read(packet_state, m.dst);
         let address = self.align(address, m.extra);
         let pointer = self.pointer(packet_state, address, true);

@@ -3,18 +3,18 @@
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{InstBuilder, Value, types};
 
-use super::super::decode::{LONG1, LONG2, Micro, UNSIGNED};
+use super::super::decode::{LONG1, LONG2, MicroOp, UNSIGNED};
 use super::super::product::Halves;
 use super::super::work::Work;
 use super::packet::PacketState;
-use super::region::{PairWord, Stopped, Translator};
+use super::region::{NoNextPacket, PairWord, Translator};
 
 /// Bits of a long.
 const LONG: i64 = 40;
 
 impl Translator<'_, '_> {
     /// Translates an instruction whose condition is known.
-    pub(super) fn micro(&mut self, packet_state: &mut PacketState, m: &Micro) -> Result<(), Stopped> {
+    pub(super) fn micro(&mut self, packet_state: &mut PacketState, m: &MicroOp) -> Result<(), NoNextPacket> {
         let base = self.read(packet_state, m.a);
         let s1 = if m.imm == 0 { base } else { self.builder.ins().iadd_imm_s(base, signed(m.imm)) };
         let s2 = self.read(packet_state, m.b);
@@ -141,7 +141,7 @@ impl Translator<'_, '_> {
             | Work::BranchNrp
             | Work::ReadControl
             | Work::WriteControl
-            | Work::Idle => Err(Stopped::Here),
+            | Work::Idle => Err(NoNextPacket::PacketInterpreted),
         }
     }
 
@@ -149,10 +149,10 @@ impl Translator<'_, '_> {
     fn word(
         &mut self,
         packet_state: &PacketState,
-        m: &Micro,
+        m: &MicroOp,
         s1: Value,
         s2: Value,
-    ) -> Result<Value, Stopped> {
+    ) -> Result<Value, NoNextPacket> {
         let builder = &mut self.builder;
         Ok(match m.work {
             Work::Add => builder.ins().iadd(s1, s2),
@@ -204,7 +204,7 @@ impl Translator<'_, '_> {
                 let low = self.builder.ins().band_imm_u(low, 0xFFFF);
                 self.builder.ins().bor_imm_u(low, i64::from(m.imm))
             }
-            _ => return Err(Stopped::Here),
+            _ => return Err(NoNextPacket::PacketInterpreted),
         })
     }
 
@@ -325,7 +325,7 @@ impl Translator<'_, '_> {
     fn long_source(
         &mut self,
         packet_state: &PacketState,
-        m: &Micro,
+        m: &MicroOp,
         reg: u8,
         is_pair: bool,
         imm: u32,
@@ -342,12 +342,12 @@ impl Translator<'_, '_> {
     }
 
     /// Returns both sources.
-    fn long_sources(&mut self, packet_state: &PacketState, m: &Micro) -> [Value; 2] {
+    fn long_sources(&mut self, packet_state: &PacketState, m: &MicroOp) -> [Value; 2] {
         let one = self.long_source(packet_state, m, m.a, m.flags & LONG1 != 0, m.imm);
         [one, self.long_source(packet_state, m, m.b, m.flags & LONG2 != 0, 0)]
     }
 
-    fn long(&mut self, packet_state: &PacketState, m: &Micro, s1: Value) -> Result<Value, Stopped> {
+    fn long(&mut self, packet_state: &PacketState, m: &MicroOp, s1: Value) -> Result<Value, NoNextPacket> {
         let [one, two] = self.long_sources(packet_state, m);
         let count = self.builder.ins().band_imm_u(s1, 63);
         let count = self.builder.ins().uextend(types::I64, count);
@@ -362,11 +362,11 @@ impl Translator<'_, '_> {
                 let plain = self.builder.ins().ushr_imm_u(up, 64 - LONG);
                 self.builder.ins().ushr(plain, count)
             }
-            _ => return Err(Stopped::Here),
+            _ => return Err(NoNextPacket::PacketInterpreted),
         })
     }
 
-    fn compare_long(&mut self, packet_state: &PacketState, m: &Micro) -> Value {
+    fn compare_long(&mut self, packet_state: &PacketState, m: &MicroOp) -> Value {
         let sources = self.long_sources(packet_state, m);
         // Unsigned 40-bit values compare like the same bits shifted to the top.
         let [one, two] = sources.map(|source| self.builder.ins().ishl_imm_u(source, 64 - LONG));
@@ -381,7 +381,12 @@ impl Translator<'_, '_> {
     }
 
     /// Writes a 40-bit result in E1.
-    fn write_long(&mut self, packet_state: &mut PacketState, m: &Micro, value: Value) -> Result<(), Stopped> {
+    fn write_long(
+        &mut self,
+        packet_state: &mut PacketState,
+        m: &MicroOp,
+        value: Value,
+    ) -> Result<(), NoNextPacket> {
         let (low, high) = self.split(value);
         let high = self.builder.ins().band_imm_u(high, 0xFF);
         self.give(packet_state, m, m.dst, low)?;
@@ -392,9 +397,9 @@ impl Translator<'_, '_> {
     fn give_double(
         &mut self,
         packet_state: &mut PacketState,
-        m: &Micro,
+        m: &MicroOp,
         value: Value,
-    ) -> Result<(), Stopped> {
+    ) -> Result<(), NoNextPacket> {
         let (low, high) = self.split(value);
         self.give(packet_state, m, m.dst, low)?;
         self.push(packet_state, 2, m.dst | 1, high)
@@ -407,7 +412,7 @@ impl Translator<'_, '_> {
         due: [u8; 2],
         reg: u8,
         value: Value,
-    ) -> Result<(), Stopped> {
+    ) -> Result<(), NoNextPacket> {
         let (low, high) = self.split(value);
         self.push(packet_state, due[0], reg, low)?;
         self.push(packet_state, due[1], reg | 1, high)

@@ -3,11 +3,11 @@
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value, types};
 
-use super::super::decode::Micro;
+use super::super::decode::MicroOp;
 use super::super::float::SUM_EXPONENT;
 use super::super::work::Work;
 use super::packet::PacketState;
-use super::region::{Stopped, Translator};
+use super::region::{NoNextPacket, Translator};
 
 const EXPONENT_SINGLE: i64 = 0x7F80_0000;
 const SIGN_SINGLE: i64 = 0x8000_0000;
@@ -84,13 +84,13 @@ impl Translator<'_, '_> {
     }
 
     /// The double in the second source.
-    fn second(&mut self, packet_state: &PacketState, m: &Micro, low: Value) -> Value {
+    fn second(&mut self, packet_state: &PacketState, m: &MicroOp, low: Value) -> Value {
         let high = self.read(packet_state, m.b | 1);
         self.join(low, high)
     }
 
     /// A conversion to a word.
-    pub(super) fn converted(&mut self, packet_state: &PacketState, m: &Micro, s2: Value) -> Value {
+    pub(super) fn converted(&mut self, packet_state: &PacketState, m: &MicroOp, s2: Value) -> Value {
         match m.work {
             Work::Intsp | Work::Intspu => {
                 // A double holds the intermediate value exactly, so it is rounded only once.
@@ -150,7 +150,7 @@ impl Translator<'_, '_> {
     }
 
     /// The bits of a double that is available in the first two stages.
-    pub(super) fn double_at_once(&mut self, packet_state: &PacketState, m: &Micro, s2: Value) -> Value {
+    pub(super) fn double_at_once(&mut self, packet_state: &PacketState, m: &MicroOp, s2: Value) -> Value {
         if m.work == Work::Spdp {
             let value = self.single_source(s2);
             let value = self.builder.ins().fpromote(types::F64, value);
@@ -181,10 +181,10 @@ impl Translator<'_, '_> {
     pub(super) fn finish_double(
         &mut self,
         packet_state: &mut PacketState,
-        m: &Micro,
+        m: &MicroOp,
         s1: [Value; 2],
         s2: [Value; 2],
-    ) -> Result<(), Stopped> {
+    ) -> Result<(), NoNextPacket> {
         let is_sum = matches!(m.work, Work::Adddp | Work::Subdp);
         if is_sum || m.work == Work::Mpydp {
             let value = self.arithmetic(m.work, s1, s2);

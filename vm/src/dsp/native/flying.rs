@@ -4,36 +4,36 @@
 //! a translation begins with a list of the effects in flight, and only the values come from outside; at each exit
 //! another list describes the values that it leaves.
 
-use super::super::decode::Micro;
-use super::super::flight::{Late, SLOTS};
+use super::super::decode::MicroOp;
+use super::super::flight::{PendingDouble, SLOTS};
 use super::super::pipeline::State;
 use crate::native::{Handover, VALUES};
 
 /// An effect in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Flying {
+pub(super) struct InFlightEffect {
     /// Cycles until it arrives.
     pub(super) due: u8,
     /// True if a condition decides whether it arrives at all; the condition is its first value.
     pub(super) is_conditional: bool,
     /// The effect.
-    pub(super) what: Arriving,
+    pub(super) kind: EffectKind,
 }
 
 /// An effect that can be in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Arriving {
+pub(super) enum EffectKind {
     /// A result for this register; its value.
     Result(u8),
     /// A branch to an address, or to one that is a value.
     Branch(Option<u32>),
     /// A double instruction that reads high words when it arrives; the low words.
-    Start(Micro),
+    Start(MicroOp),
     /// A product of doubles that reads the last high word; the low words and the high one of the second source.
-    Product(Micro),
+    Product(MicroOp),
 }
 
-impl Arriving {
+impl EffectKind {
     /// Number of its values.
     pub(super) const fn values(self) -> usize {
         match self {
@@ -57,7 +57,7 @@ impl Arriving {
 
 impl State {
     /// Lists the effects in flight; `false` if a translation cannot begin with them.
-    pub(super) fn list_flying(&self, flying: &mut Vec<Flying>) -> bool {
+    pub(super) fn list_flying(&self, flying: &mut Vec<InFlightEffect>) -> bool {
         flying.clear();
         if self.flight.is_empty() {
             return true;
@@ -69,19 +69,23 @@ impl State {
             }
             let mut mask = self.flight.masks[slot];
             while mask != 0 {
-                let what = Arriving::Result(mask.trailing_zeros() as u8);
-                flying.push(Flying { due, is_conditional: false, what });
+                let what = EffectKind::Result(mask.trailing_zeros() as u8);
+                flying.push(InFlightEffect { due, is_conditional: false, kind: what });
                 mask &= mask - 1;
             }
             for late in self.flight.late.iter().filter(|late| late.due == self.clock.cycle + u64::from(due)) {
                 if late.high2.is_none() || late.issued + 1 != self.clock.cycle || due != 1 {
                     return false;
                 }
-                flying.push(Flying { due, is_conditional: false, what: Arriving::Product(late.micro) });
+                flying.push(InFlightEffect {
+                    due,
+                    is_conditional: false,
+                    kind: EffectKind::Product(late.micro),
+                });
             }
             if self.flight.branches >> slot & 1 != 0 {
-                let what = Arriving::Branch(Some(self.flight.targets[slot]));
-                flying.push(Flying { due, is_conditional: false, what });
+                let what = EffectKind::Branch(Some(self.flight.targets[slot]));
+                flying.push(InFlightEffect { due, is_conditional: false, kind: what });
             }
         }
         true
@@ -89,7 +93,7 @@ impl State {
 
     /// Moves the values of the effects that [`list_flying`](Self::list_flying) has listed to `values`: none is in
     /// flight in the state any more.
-    pub(super) fn take_flying(&mut self, flying: &[Flying], values: &mut [u32; VALUES]) {
+    pub(super) fn take_flying(&mut self, flying: &[InFlightEffect], values: &mut [u32; VALUES]) {
         let mut values = values.iter_mut();
         let mut lates = self.flight.late.iter();
         for one in flying {
@@ -99,11 +103,11 @@ impl State {
                     *place = value;
                 }
             };
-            match one.what {
-                Arriving::Result(reg) => put(self.flight.values[slot][usize::from(reg & 63)]),
-                Arriving::Branch(Some(_)) => {}
-                Arriving::Branch(None) => put(self.flight.targets[slot]),
-                Arriving::Start(_) | Arriving::Product(_) => {
+            match one.kind {
+                EffectKind::Result(reg) => put(self.flight.values[slot][usize::from(reg & 63)]),
+                EffectKind::Branch(Some(_)) => {}
+                EffectKind::Branch(None) => put(self.flight.targets[slot]),
+                EffectKind::Start(_) | EffectKind::Product(_) => {
                     let Some(late) = lates.next() else { continue };
                     put(late.low1);
                     put(late.low2);
@@ -118,21 +122,21 @@ impl State {
     }
 
     /// Puts effects in flight, relative to the present cycle.
-    pub(super) fn put_flying(&mut self, flying: &[Flying], values: &[u32; VALUES]) {
+    pub(super) fn put_flying(&mut self, flying: &[InFlightEffect], values: &[u32; VALUES]) {
         let mut values = values.iter().copied();
         for one in flying {
             let arrives = !one.is_conditional || values.next().is_some_and(|condition| condition != 0);
             let mut own = [0; 3];
-            own.iter_mut().zip(values.by_ref().take(one.what.values())).for_each(|(own, value)| *own = value);
+            own.iter_mut().zip(values.by_ref().take(one.kind.values())).for_each(|(own, value)| *own = value);
             if !arrives {
                 continue;
             }
             self.flight.expect(1 << one.due);
             let due = u64::from(one.due);
-            match one.what {
-                Arriving::Result(reg) => self.push(due, reg, own[0]),
-                Arriving::Branch(target) => self.set_branch(due, target.unwrap_or(own[0])),
-                Arriving::Start(micro) => self.push_late(Late {
+            match one.kind {
+                EffectKind::Result(reg) => self.push(due, reg, own[0]),
+                EffectKind::Branch(target) => self.set_branch(due, target.unwrap_or(own[0])),
+                EffectKind::Start(micro) => self.push_late(PendingDouble {
                     due: self.clock.cycle + due,
                     issued: self.clock.cycle,
                     micro,
@@ -140,7 +144,7 @@ impl State {
                     low2: own[1],
                     high2: None,
                 }),
-                Arriving::Product(micro) => self.push_late(Late {
+                EffectKind::Product(micro) => self.push_late(PendingDouble {
                     due: self.clock.cycle + due,
                     issued: self.clock.cycle - 1,
                     micro,

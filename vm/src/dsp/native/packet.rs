@@ -9,10 +9,10 @@ use std::mem::offset_of;
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{Block, InstBuilder, Value, types};
 
-use super::super::decode::{DEFERRED, Micro, STACK, TRUE, ZERO};
+use super::super::decode::{DEFERRED, MicroOp, STACK, TRUE, ZERO};
 use super::super::work::Work;
-use super::flying::{Arriving, Flying};
-use super::region::{Border, Flight, Stopped, Translator, offset, result, sort};
+use super::flying::{EffectKind, InFlightEffect};
+use super::region::{Border, EffectValues, NoNextPacket, Translator, offset, result, sort};
 use crate::native::Handover;
 
 /// Cycles from a branch to its target.
@@ -24,7 +24,7 @@ pub(super) struct PacketState {
     /// Registers that have their new values at the end of this cycle.
     pub(super) now: BTreeMap<u8, Value>,
     /// The effects in flight, from before and from this packet.
-    pub(super) flights: Vec<Flight>,
+    pub(super) flights: Vec<EffectValues>,
     /// Stores that wait for the end: pointer, value, bytes.
     pub(super) stores: Vec<(Value, Value, u32)>,
     /// Branches that were taken: their conditions.
@@ -37,13 +37,13 @@ pub(super) struct PacketState {
 
 impl Translator<'_, '_> {
     /// Translates the packet at the border and advances the border; `false` if no packet follows in this block.
-    pub(super) fn packet(&mut self, border: &mut Border) -> Result<bool, Stopped> {
+    pub(super) fn packet(&mut self, border: &mut Border) -> Result<bool, NoNextPacket> {
         if border.pc & 3 != 0 {
-            return Err(Stopped::Here);
+            return Err(NoNextPacket::PacketInterpreted);
         }
-        let (packet, micros) = (self.find)(border.pc).ok_or(Stopped::Here)?;
+        let (packet, micros) = (self.find)(border.pc).ok_or(NoNextPacket::PacketInterpreted)?;
         if packet.is_idle {
-            return Err(Stopped::Here);
+            return Err(NoNextPacket::PacketInterpreted);
         }
         let mut packet_state = PacketState { flights: border.flights.clone(), ..PacketState::default() };
         let done = micros.iter().try_for_each(|micro| {
@@ -79,7 +79,7 @@ impl Translator<'_, '_> {
     }
 
     /// The value that decides whether an instruction is executed; `None` if it always is.
-    fn condition(&mut self, packet_state: &PacketState, micro: &Micro) -> Option<Value> {
+    fn condition(&mut self, packet_state: &PacketState, micro: &MicroOp) -> Option<Value> {
         if micro.pred == TRUE {
             return None;
         }
@@ -104,10 +104,10 @@ impl Translator<'_, '_> {
     pub(super) fn give(
         &mut self,
         packet_state: &mut PacketState,
-        micro: &Micro,
+        micro: &MicroOp,
         reg: u8,
         value: Value,
-    ) -> Result<(), Stopped> {
+    ) -> Result<(), NoNextPacket> {
         if micro.flags & DEFERRED != 0 {
             return self.push(packet_state, 1, reg, value);
         }
@@ -128,9 +128,13 @@ impl Translator<'_, '_> {
     }
 
     /// Two results for one register: certain, or only if both conditions hold.
-    fn refuse_both(&mut self, packet_state: &mut PacketState, other: Option<Value>) -> Result<(), Stopped> {
+    fn refuse_both(
+        &mut self,
+        packet_state: &mut PacketState,
+        other: Option<Value>,
+    ) -> Result<(), NoNextPacket> {
         let both = match (packet_state.condition, other) {
-            (None, None) => return Err(Stopped::Here),
+            (None, None) => return Err(NoNextPacket::PacketInterpreted),
             (Some(one), None) | (None, Some(one)) => one,
             (Some(one), Some(two)) => self.builder.ins().band(one, two),
         };
@@ -145,7 +149,7 @@ impl Translator<'_, '_> {
         due: u8,
         reg: u8,
         value: Value,
-    ) -> Result<(), Stopped> {
+    ) -> Result<(), NoNextPacket> {
         let index =
             packet_state.flights.iter().position(|flight| flight.flying == strip(flight.flying, due, reg));
         let Some(index) = index else {
@@ -172,7 +176,7 @@ impl Translator<'_, '_> {
         &mut self,
         packet_state: &mut PacketState,
         target: Result<u32, Value>,
-    ) -> Result<(), Stopped> {
+    ) -> Result<(), NoNextPacket> {
         let (known, values) = match target {
             Ok(address) => (Some(address), Vec::new()),
             Err(value) => (None, vec![value]),
@@ -180,21 +184,23 @@ impl Translator<'_, '_> {
         let others: Vec<Option<Value>> = packet_state
             .flights
             .iter()
-            .filter(|flight| flight.flying.due == BRANCH && matches!(flight.flying.what, Arriving::Branch(_)))
+            .filter(|flight| {
+                flight.flying.due == BRANCH && matches!(flight.flying.kind, EffectKind::Branch(_))
+            })
             .map(|flight| flight.condition)
             .collect();
         for other in others {
             self.refuse_both(packet_state, other)?;
         }
-        let flying = Flying { due: BRANCH, is_conditional: false, what: Arriving::Branch(known) };
+        let flying = InFlightEffect { due: BRANCH, is_conditional: false, kind: EffectKind::Branch(known) };
         packet_state.flights.push(fly(flying, packet_state.condition, values));
         packet_state.branches.push(packet_state.condition);
         Ok(())
     }
 
     /// A double instruction that reads its high words later.
-    pub(super) fn start_double(&mut self, packet_state: &mut PacketState, micro: &Micro, low: [Value; 2]) {
-        let flying = Flying { due: 1, is_conditional: false, what: Arriving::Start(*micro) };
+    pub(super) fn start_double(&mut self, packet_state: &mut PacketState, micro: &MicroOp, low: [Value; 2]) {
+        let flying = InFlightEffect { due: 1, is_conditional: false, kind: EffectKind::Start(*micro) };
         packet_state.flights.push(fly(flying, packet_state.condition, low.to_vec()));
     }
 
@@ -255,7 +261,7 @@ impl Translator<'_, '_> {
     }
 
     /// Lets the cycles of a packet pass; `false` where a branch has certainly arrived.
-    fn advance(&mut self, border: &mut Border, cycles: u8) -> Result<bool, Stopped> {
+    fn advance(&mut self, border: &mut Border, cycles: u8) -> Result<bool, NoNextPacket> {
         for _ in 0..cycles {
             border.cycles += 1;
             border.flights.iter_mut().for_each(|flight| flight.flying.due -= 1);
@@ -263,7 +269,7 @@ impl Translator<'_, '_> {
             let (arrived, mut rest): (Vec<_>, Vec<_>) =
                 flights.into_iter().partition(|flight| flight.flying.due == 0);
             for flight in &arrived {
-                if let Arriving::Result(reg) = flight.flying.what {
+                if let EffectKind::Result(reg) = flight.flying.kind {
                     self.land(reg, flight.condition, flight.values[0]);
                 }
             }
@@ -271,10 +277,10 @@ impl Translator<'_, '_> {
                 PacketState { flights: std::mem::take(&mut rest), ..PacketState::default() };
             for flight in &arrived {
                 // A second result for the same register is reported by the interpreter, at the next packet, not here.
-                self.read_late(&mut packet_state, flight).map_err(|_| Stopped::Unusual)?;
+                self.read_late(&mut packet_state, flight).map_err(|_| NoNextPacket::RegionInterpreted)?;
             }
             if packet_state.side.is_some() {
-                return Err(Stopped::Unusual);
+                return Err(NoNextPacket::RegionInterpreted);
             }
             border.flights = packet_state.flights;
             sort(&mut border.flights);
@@ -299,18 +305,22 @@ impl Translator<'_, '_> {
     }
 
     /// The next read of a double instruction.
-    fn read_late(&mut self, packet_state: &mut PacketState, flight: &Flight) -> Result<(), Stopped> {
+    fn read_late(
+        &mut self,
+        packet_state: &mut PacketState,
+        flight: &EffectValues,
+    ) -> Result<(), NoNextPacket> {
         packet_state.condition = flight.condition;
-        let (micro, high2) = match flight.flying.what {
-            Arriving::Start(micro) => (micro, None),
-            Arriving::Product(micro) => (micro, Some(flight.values[2])),
-            Arriving::Result(_) | Arriving::Branch(_) => return Ok(()),
+        let (micro, high2) = match flight.flying.kind {
+            EffectKind::Start(micro) => (micro, None),
+            EffectKind::Product(micro) => (micro, Some(flight.values[2])),
+            EffectKind::Result(_) | EffectKind::Branch(_) => return Ok(()),
         };
         let [low1, low2] = [flight.values[0], flight.values[1]];
         let high1 = self.read(packet_state, micro.a | 1);
         let own2 = self.read(packet_state, micro.b | 1);
         if micro.work == Work::Mpydp && high2.is_none() {
-            let flying = Flying { due: 1, is_conditional: false, what: Arriving::Product(micro) };
+            let flying = InFlightEffect { due: 1, is_conditional: false, kind: EffectKind::Product(micro) };
             packet_state.flights.push(fly(flying, flight.condition, vec![low1, low2, own2]));
             return Ok(());
         }
@@ -318,8 +328,8 @@ impl Translator<'_, '_> {
     }
 
     /// Emits a branch that arrives; reports whether it is certainly taken.
-    fn arrive(&mut self, border: &Border, flight: &Flight) -> bool {
-        let Arriving::Branch(known) = flight.flying.what else { return false };
+    fn arrive(&mut self, border: &Border, flight: &EffectValues) -> bool {
+        let EffectKind::Branch(known) = flight.flying.kind else { return false };
         let rest = flight.condition.map(|condition| {
             let (taken, rest) = (self.builder.create_block(), self.builder.create_block());
             self.builder.ins().brif(condition, taken, &[], rest, &[]);
@@ -338,11 +348,15 @@ impl Translator<'_, '_> {
 }
 
 /// `flying` if it is a result for `reg` due in `due` cycles; otherwise a placeholder that matches nothing.
-fn strip(flying: Flying, due: u8, reg: u8) -> Flying {
-    Flying { is_conditional: flying.is_conditional, ..result(due, reg) }
+fn strip(flying: InFlightEffect, due: u8, reg: u8) -> InFlightEffect {
+    InFlightEffect { is_conditional: flying.is_conditional, ..result(due, reg) }
 }
 
 /// An effect in flight with its condition.
-fn fly(flying: Flying, condition: Option<Value>, values: Vec<Value>) -> Flight {
-    Flight { flying: Flying { is_conditional: condition.is_some(), ..flying }, condition, values }
+fn fly(flying: InFlightEffect, condition: Option<Value>, values: Vec<Value>) -> EffectValues {
+    EffectValues {
+        flying: InFlightEffect { is_conditional: condition.is_some(), ..flying },
+        condition,
+        values,
+    }
 }

@@ -19,8 +19,8 @@ use cranelift_codegen::ir::{
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Variable};
 use cranelift_module::Module;
 
-use super::super::decode::{Micro, Packet};
-use super::flying::{Arriving, Flying};
+use super::super::decode::{MicroOp, Packet};
+use super::flying::{EffectKind, InFlightEffect};
 use crate::native::{CompileError, Handover, Piece, Places, VALUES};
 
 /// Cycles that must be left where a block begins: no block takes more.
@@ -34,13 +34,13 @@ const MOST_BLOCKS: usize = 64;
 const REGISTERS: u8 = 64;
 
 /// Finds the packet at an address, and its instructions.
-pub(super) type Find<'a> = dyn FnMut(u32) -> Option<(Packet, Vec<Micro>)> + 'a;
+pub(super) type PacketFinder<'a> = dyn FnMut(u32) -> Option<(Packet, Vec<MicroOp>)> + 'a;
 
 /// A region, ready to run.
 #[derive(Debug)]
 pub(super) struct Region {
     /// The effects in flight at its entry.
-    pub(super) entry: Vec<Flying>,
+    pub(super) entry: Vec<InFlightEffect>,
     /// Its code, which returns the number of an exit.
     pub(super) piece: Piece,
     /// Its exits.
@@ -53,7 +53,7 @@ pub(super) struct Exit {
     /// The next packet; `None` if the code computes it.
     pub(super) pc: Option<u32>,
     /// The effects in flight at the exit.
-    pub(super) flying: Vec<Flying>,
+    pub(super) flying: Vec<InFlightEffect>,
     /// True if another region may begin at the exit.
     pub(super) is_end: bool,
 }
@@ -74,7 +74,11 @@ impl From<CompileError> for NoRegion {
 }
 
 /// Translates the packets that are reached from `pc` with the effects `entry` in flight.
-pub(super) fn translate(pc: u32, entry: Vec<Flying>, find: &mut Find<'_>) -> Result<Region, NoRegion> {
+pub(super) fn translate(
+    pc: u32,
+    entry: Vec<InFlightEffect>,
+    find: &mut PacketFinder<'_>,
+) -> Result<Region, NoRegion> {
     let mut exits = Vec::new();
     let piece = Piece::compile(|function, context, module| {
         let mut translator = Translator::new(function, context, find);
@@ -90,12 +94,12 @@ pub(super) fn translate(pc: u32, entry: Vec<Flying>, find: &mut Find<'_>) -> Res
 
 /// The error that a region or a packet needs the interpreter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Unusual;
+pub(super) struct NeedsInterpreter;
 
 /// An effect in flight, with its values.
 #[derive(Clone, Debug)]
-pub(super) struct Flight {
-    pub(super) flying: Flying,
+pub(super) struct EffectValues {
+    pub(super) flying: InFlightEffect,
     pub(super) condition: Option<Value>,
     pub(super) values: Vec<Value>,
 }
@@ -109,14 +113,14 @@ pub(super) struct Border {
     pub(super) cycles: u32,
     pub(super) packets: u32,
     /// The effects in flight, in their order.
-    pub(super) flights: Vec<Flight>,
+    pub(super) flights: Vec<EffectValues>,
 }
 
 /// A block of the region.
 #[derive(Clone)]
 struct Node {
     pc: u32,
-    flying: Vec<Flying>,
+    flying: Vec<InFlightEffect>,
     /// Words in flight that form one value, by their numbers among all values.
     pairs: Vec<[usize; 2]>,
     block: Block,
@@ -153,7 +157,7 @@ pub(super) struct Pointers {
 /// Writes the function.
 pub(super) struct Translator<'a, 'f> {
     pub(super) builder: FunctionBuilder<'a>,
-    pub(super) find: &'a mut Find<'f>,
+    pub(super) find: &'a mut PacketFinder<'f>,
     pub(super) regs: Vec<Variable>,
     pub(super) counters: Counters,
     pub(super) pointers: Pointers,
@@ -178,7 +182,7 @@ impl<'a, 'f> Translator<'a, 'f> {
     fn new(
         function: &'a mut Function,
         context: &'a mut FunctionBuilderContext,
-        find: &'a mut Find<'f>,
+        find: &'a mut PacketFinder<'f>,
     ) -> Self {
         let mut builder = FunctionBuilder::new(function, context);
         let entry = builder.create_block();
@@ -235,12 +239,12 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 
     /// Translates the whole region.
-    fn region(&mut self, pc: u32, entry: &[Flying]) -> Result<(), Unusual> {
+    fn region(&mut self, pc: u32, entry: &[InFlightEffect]) -> Result<(), NeedsInterpreter> {
         let mut values = Vec::new();
         let first = offset(offset_of!(Handover, values));
-        let count: usize = entry.iter().map(|flying| flying.what.values()).sum();
+        let count: usize = entry.iter().map(|flying| flying.kind.values()).sum();
         if count > VALUES {
-            return Err(Unusual);
+            return Err(NeedsInterpreter);
         }
         for place in (first..).step_by(4).take(count) {
             values.push(self.builder.ins().load(types::I32, self.own, self.pointers.handover, place));
@@ -261,7 +265,7 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 
     /// Returns the block of a packet with these effects in flight.
-    fn node(&mut self, pc: u32, flying: &[Flying]) -> usize {
+    fn node(&mut self, pc: u32, flying: &[InFlightEffect]) -> usize {
         if let Some(known) = self.nodes.iter().position(|node| node.pc == pc && node.flying == flying) {
             return known;
         }
@@ -272,7 +276,7 @@ impl<'a, 'f> Translator<'a, 'f> {
         for _ in flying.iter().filter(|one| one.is_conditional) {
             self.builder.append_block_param(block, types::I8);
         }
-        let words = flying.iter().map(|one| one.what.values()).sum::<usize>() - 2 * pairs.len();
+        let words = flying.iter().map(|one| one.kind.values()).sum::<usize>() - 2 * pairs.len();
         for _ in 0..words {
             self.builder.append_block_param(block, types::I32);
         }
@@ -281,7 +285,7 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 
     /// Jumps to a block with the effects in flight.
-    fn jump(&mut self, node: usize, flights: &[Flight]) {
+    fn jump(&mut self, node: usize, flights: &[EffectValues]) {
         let Node { pairs, block, .. } = self.nodes[node].clone();
         let values: Vec<Value> = flights.iter().flat_map(|flight| flight.values.iter().copied()).collect();
         let mut arguments = Vec::new();
@@ -295,7 +299,7 @@ impl<'a, 'f> Translator<'a, 'f> {
     }
 
     /// Translates a block: packets until a branch arrives, or enough of them.
-    fn block(&mut self, index: usize) -> Result<(), Unusual> {
+    fn block(&mut self, index: usize) -> Result<(), NeedsInterpreter> {
         let node = self.nodes[index].clone();
         self.builder.switch_to_block(node.block);
         let mut border = Border { pc: node.pc, cycles: 0, packets: 0, flights: self.arrived(&node) };
@@ -317,17 +321,17 @@ impl<'a, 'f> Translator<'a, 'f> {
             match self.packet(&mut border) {
                 Ok(true) => {}
                 Ok(false) => return Ok(()),
-                Err(Stopped::Here) => {
+                Err(NoNextPacket::PacketInterpreted) => {
                     self.exit(&border, None, false);
                     return Ok(());
                 }
-                Err(Stopped::Unusual) => return Err(Unusual),
+                Err(NoNextPacket::RegionInterpreted) => return Err(NeedsInterpreter),
             }
         }
     }
 
     /// The effects in flight at the beginning of a block.
-    fn arrived(&mut self, node: &Node) -> Vec<Flight> {
+    fn arrived(&mut self, node: &Node) -> Vec<EffectValues> {
         let mut parameters = self.builder.block_params(node.block).to_vec().into_iter();
         let wholes: Vec<Value> = parameters.by_ref().take(node.pairs.len()).collect();
         let mut words = BTreeMap::new();
@@ -337,7 +341,7 @@ impl<'a, 'f> Translator<'a, 'f> {
         }
         let conditional = node.flying.iter().filter(|one| one.is_conditional).count();
         let mut conditions = parameters.by_ref().take(conditional).collect::<Vec<_>>().into_iter();
-        let count = node.flying.iter().map(|one| one.what.values()).sum();
+        let count = node.flying.iter().map(|one| one.kind.values()).sum();
         let values: Vec<Value> =
             (0..count).filter_map(|index| words.get(&index).copied().or_else(|| parameters.next())).collect();
         let mut flights = flights(&node.flying, &mut values.into_iter());
@@ -442,38 +446,38 @@ impl<'a, 'f> Translator<'a, 'f> {
 
 /// The reason why no packet follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Stopped {
+pub(super) enum NoNextPacket {
     /// The packet is the interpreter's.
-    Here,
+    PacketInterpreted,
     /// The region is.
-    Unusual,
+    RegionInterpreted,
 }
 
 /// The effects in flight, without their values.
-fn shape(flights: &[Flight]) -> Vec<Flying> {
+fn shape(flights: &[EffectValues]) -> Vec<InFlightEffect> {
     flights.iter().map(|flight| flight.flying).collect()
 }
 
 /// The effects in flight with their values, without conditions.
-fn flights(flying: &[Flying], values: &mut impl Iterator<Item = Value>) -> Vec<Flight> {
-    let with_values = |flying: &Flying| Flight {
+fn flights(flying: &[InFlightEffect], values: &mut impl Iterator<Item = Value>) -> Vec<EffectValues> {
+    let with_values = |flying: &InFlightEffect| EffectValues {
         flying: *flying,
         condition: None,
-        values: values.by_ref().take(flying.what.values()).collect(),
+        values: values.by_ref().take(flying.kind.values()).collect(),
     };
     flying.iter().map(with_values).collect()
 }
 
 /// The results that are likely to be the two words of one value, by the numbers of their values: results for an even
 /// register and the next one that land in the same cycle, or the second a cycle later.
-fn pairs(flying: &[Flying]) -> Vec<[usize; 2]> {
+fn pairs(flying: &[InFlightEffect]) -> Vec<[usize; 2]> {
     let mut values = 0;
     let mut results = Vec::new();
     for one in flying {
-        if let (Arriving::Result(reg), false) = (one.what, one.is_conditional) {
+        if let (EffectKind::Result(reg), false) = (one.kind, one.is_conditional) {
             results.push((one.due, reg, values));
         }
-        values += one.what.values();
+        values += one.kind.values();
     }
     let mut pairs: Vec<[usize; 2]> = Vec::new();
     for (due, reg, low) in results.iter().filter(|(_, reg, _)| reg & 1 == 0) {
@@ -488,11 +492,11 @@ fn pairs(flying: &[Flying]) -> Vec<[usize; 2]> {
 }
 
 /// Sorts the effects in flight.
-pub(super) fn sort(flights: &mut [Flight]) {
-    flights.sort_by_key(|flight| (flight.flying.due, flight.flying.what.rank()));
+pub(super) fn sort(flights: &mut [EffectValues]) {
+    flights.sort_by_key(|flight| (flight.flying.due, flight.flying.kind.rank()));
 }
 
 /// A result for a register.
-pub(super) const fn result(due: u8, reg: u8) -> Flying {
-    Flying { due, is_conditional: false, what: Arriving::Result(reg) }
+pub(super) const fn result(due: u8, reg: u8) -> InFlightEffect {
+    InFlightEffect { due, is_conditional: false, kind: EffectKind::Result(reg) }
 }

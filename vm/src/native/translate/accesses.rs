@@ -8,10 +8,10 @@ use crate::operand::{Off, RegI32};
 pub(super) type Root = u32;
 
 /// The base register, displacement and width of an access, and whether it is a store.
-pub(super) type Accessed = (RegI32, Off, Width, bool);
+pub(super) type RegisterAccess = (RegI32, Off, Width, bool);
 
 /// The access of an instruction through a register.
-pub(super) fn accessed(op: &Op) -> Option<Accessed> {
+pub(super) fn accessed(op: &Op) -> Option<RegisterAccess> {
     let kind = op.kind();
     Some((op.operand(Name::Base)?, op.operand(Name::Off)?, kind.width()?, matches!(kind, OpKind::Store(_))))
 }

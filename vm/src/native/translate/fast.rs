@@ -21,7 +21,7 @@ use crate::kind::Width;
 use crate::operand::RegI32;
 
 /// The state of translating fast iterations.
-pub(super) struct Fast {
+pub(super) struct FastIterations {
     plan: Plan,
     iteration: usize,
     /// Cycles that have been charged but not yet subtracted from the budget.
@@ -99,11 +99,11 @@ impl Translator<'_, '_> {
         }
     }
 
-    fn fast_blocks(&mut self, plan: Plan, first: Block) -> Fast {
+    fn fast_blocks(&mut self, plan: Plan, first: Block) -> FastIterations {
         let mut blocks: BTreeMap<IterationWord, Block> =
             plan.entries.keys().map(|place| (*place, self.builder.create_block())).collect();
         blocks.insert((0, plan.entry()), first);
-        Fast {
+        FastIterations {
             plan,
             iteration: 0,
             spent: 0,

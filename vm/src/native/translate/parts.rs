@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use cranelift_codegen::ir::{Block, FuncRef, MemFlagsData, SigRef, Value};
 use cranelift_frontend::Variable;
 
-use super::fast::{BudgetEdge, Fast};
+use super::fast::{BudgetEdge, FastIterations};
 use super::shortcut::{Attempt, ShortcutWords};
 use super::unroll::Plan;
 use crate::polling::PollingLoop;
@@ -41,7 +41,7 @@ pub(super) struct CallParts {
 pub(super) struct UnrollState {
     /// The loops of which several iterations are translated at once, by their first word, and the current one.
     pub(super) plans: BTreeMap<usize, Plan>,
-    pub(super) fast: Option<Fast>,
+    pub(super) fast: Option<FastIterations>,
     /// True while code is translated for the rare case that fast iterations cannot continue.
     pub(super) is_rare: bool,
     /// The edges that are still to be translated.

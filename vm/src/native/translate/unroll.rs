@@ -15,7 +15,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
-use super::accesses::{Accessed, Root, accessed};
+use super::accesses::{RegisterAccess, Root, accessed};
 use super::candidates::{MAX_WORDS, innermost_loops, regions, straight_segments};
 use super::strides::{Strides, common_step};
 use crate::kind::{Name, OpKind, Width};
@@ -137,14 +137,14 @@ fn is_planned(plans: &BTreeMap<usize, Plan>, at: usize) -> bool {
 
 /// The facts known at the beginning of a block or at an instruction.
 #[derive(Clone, Debug)]
-struct Known {
+struct SymbolicState {
     spent: u32,
     symbols: Vec<SymbolicValue>,
 }
 
 /// The derivation of a root from others.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Made {
+enum RootDerivation {
     /// The sum of these roots in ascending order, none of which is a sum.
     Sum(Vec<Root>),
     Difference(Root, Root),
@@ -157,9 +157,9 @@ struct Planner<'a> {
     begins: &'a BTreeSet<usize>,
     cost: &'a dyn Fn(&Op) -> Option<u32>,
     roots: Root,
-    known_roots: BTreeMap<Made, Root>,
+    known_roots: BTreeMap<RootDerivation, Root>,
     sums: BTreeMap<Root, Vec<Root>>,
-    arriving: BTreeMap<IterationWord, Known>,
+    arriving: BTreeMap<IterationWord, SymbolicState>,
     plan: Plan,
     registers: usize,
 }
@@ -222,7 +222,7 @@ impl<'a> Planner<'a> {
         self.plan.cost = self.plan.cost.checked_mul(self.plan.iterations.max(1) as u32)?;
         self.plan.is_counted = is_loop && self.exits() == 1;
         let symbols = (0..self.registers).map(|_| self.root()).collect();
-        self.arriving.insert((0, entry), Known { spent: 0, symbols });
+        self.arriving.insert((0, entry), SymbolicState { spent: 0, symbols });
         let mut known = None;
         for iteration in 0..self.plan.iterations.max(1) {
             for at in self.plan.order.clone() {
@@ -258,7 +258,7 @@ impl<'a> Planner<'a> {
     }
 
     /// Follows one instruction; yields the facts known after it, if execution continues there.
-    fn word(&mut self, iteration: usize, at: usize, mut known: Known) -> Option<Known> {
+    fn word(&mut self, iteration: usize, at: usize, mut known: SymbolicState) -> Option<SymbolicState> {
         let op = self.program.ops()[at];
         known.spent += (self.cost)(&op).unwrap_or(0);
         if let Some(access) = accessed(&op) {
@@ -300,7 +300,7 @@ impl<'a> Planner<'a> {
             }
             Op::SubI32 { a, b, .. } => {
                 let ((a, from), (b, by)) = (of(a), of(b));
-                (self.made(Made::Difference(a, b)), from.wrapping_sub(by))
+                (self.made(RootDerivation::Difference(a, b)), from.wrapping_sub(by))
             }
             _ => self.root(),
         };
@@ -308,14 +308,14 @@ impl<'a> Planner<'a> {
     }
 
     fn product(&mut self, (root, distance): SymbolicValue, factor: i32) -> SymbolicValue {
-        (self.made(Made::Product(root, factor)), distance.wrapping_mul(factor))
+        (self.made(RootDerivation::Product(root, factor)), distance.wrapping_mul(factor))
     }
 
     /// The sum of two roots, each of which may itself be a sum.
     fn sum(&mut self, a: Root, b: Root) -> Root {
         let mut terms = [self.terms(a), self.terms(b)].concat();
         terms.sort_unstable();
-        if terms.len() > MAX_TERMS { self.root().0 } else { self.made(Made::Sum(terms)) }
+        if terms.len() > MAX_TERMS { self.root().0 } else { self.made(RootDerivation::Sum(terms)) }
     }
 
     /// The roots whose sum is `root`; `root` itself if it is not a sum.
@@ -324,12 +324,12 @@ impl<'a> Planner<'a> {
     }
 
     /// Returns the root for a derivation.
-    fn made(&mut self, made: Made) -> Root {
+    fn made(&mut self, made: RootDerivation) -> Root {
         if let Some(root) = self.known_roots.get(&made) {
             return *root;
         }
         let (root, _) = self.root();
-        if let Made::Sum(terms) = &made {
+        if let RootDerivation::Sum(terms) = &made {
             self.sums.insert(root, terms.clone());
         }
         self.known_roots.insert(made, root);
@@ -365,14 +365,14 @@ impl<'a> Planner<'a> {
     }
 
     /// A branch to `to`.
-    fn leave(&mut self, iteration: usize, to: usize, known: Known) {
+    fn leave(&mut self, iteration: usize, to: usize, known: SymbolicState) {
         if let Some(place) = self.plan.target(iteration, to) {
             self.arrive(place, known);
         }
     }
 
     /// Merges facts at a join: those that hold on all paths remain.
-    fn arrive(&mut self, place: IterationWord, known: Known) {
+    fn arrive(&mut self, place: IterationWord, known: SymbolicState) {
         let Some(mut met) = self.arriving.remove(&place) else {
             self.arriving.insert(place, known);
             return;
@@ -387,7 +387,13 @@ impl<'a> Planner<'a> {
     }
 
     /// Notes an access and widens the group of its root, if their alignments agree.
-    fn note(&mut self, iteration: usize, at: usize, (base, off, width, is_store): Accessed, known: &Known) {
+    fn note(
+        &mut self,
+        iteration: usize,
+        at: usize,
+        (base, off, width, is_store): RegisterAccess,
+        known: &SymbolicState,
+    ) {
         let (root, base) = known.symbols[base.index()];
         let begin = base.wrapping_add(i32::from(off.0));
         self.plan.accesses.insert((iteration, at), Access { root, at: begin, base });

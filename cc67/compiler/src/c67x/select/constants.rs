@@ -1,7 +1,7 @@
 //! Constants in registers.
 
 use super::Selector;
-use crate::c67x::code::{Arg, Info, Inst, VReg, Value};
+use crate::c67x::code::{Arg, Inst, VReg, VRegInfo, Value};
 use crate::c67x::forms::Kind;
 use crate::ir::inst::{Constant, Operand};
 
@@ -26,7 +26,7 @@ impl Selector<'_> {
         if let Some(reg) = self.constants.get(&value).copied().or_else(early) {
             return reg;
         }
-        let reg = self.code.reg(Info { constant: Some(value), ..Info::default() });
+        let reg = self.code.reg(VRegInfo { constant: Some(value), ..VRegInfo::default() });
         let insts = make(reg.into(), value, self.span);
         if self.depth > 0 && self.early.constants.len() < MAX_EARLY {
             self.early.insts.extend(insts);

@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 use cranelift_entity::{PrimaryMap, SecondaryMap};
 
 use super::abi;
-use super::code::{Arg, Block, Code, Condition, End, Info, Inst, VReg, Value};
+use super::code::{Arg, Block, Code, Condition, Inst, Terminator, VReg, VRegInfo, Value};
 use super::externs::Externs;
 use super::forms::Kind;
 use crate::ir::function::{Function, Signatures, table};
@@ -60,7 +60,7 @@ pub(super) fn select(context: Context<'_>) -> Code {
             spills: 0,
             has_variable_calls: false,
         },
-        early: Early::default(),
+        early: EntryCode::default(),
         constants: BTreeMap::new(),
         out: Vec::new(),
         span: function.span,
@@ -101,7 +101,7 @@ fn count_uses(function: &Function, externs: &Externs) -> SecondaryMap<ValueId, u
 
 /// The code before the first block.
 #[derive(Default)]
-struct Early {
+struct EntryCode {
     insts: Vec<Inst>,
     /// Constants that are available in registers from the present position on.
     constants: Vec<(Value, VReg)>,
@@ -117,7 +117,7 @@ pub(super) struct Selector<'a> {
     uses: SecondaryMap<ValueId, u32>,
     numbers: SecondaryMap<BlockId, u32>,
     code: Code,
-    early: Early,
+    early: EntryCode,
     /// Constants that are in registers in this block.
     constants: BTreeMap<Value, VReg>,
     out: Vec<Inst>,
@@ -145,7 +145,13 @@ impl Selector<'_> {
             self.span = block.origin.span;
             let end = self.terminator(&block.terminator, fused);
             let insts = std::mem::take(&mut self.out);
-            self.code.blocks.push(Block { insts, end, depth, unrolled: 1, span: block.origin.span });
+            self.code.blocks.push(Block {
+                insts,
+                terminator: end,
+                depth,
+                unrolled: 1,
+                span: block.origin.span,
+            });
         }
         self.enter();
     }
@@ -154,7 +160,7 @@ impl Selector<'_> {
     /// before it.
     fn enter(&mut self) {
         let early = std::mem::take(&mut self.early.insts);
-        let is_target = self.code.blocks.iter().any(|block| block.end.targets().any(|to| to == 0));
+        let is_target = self.code.blocks.iter().any(|block| block.terminator.targets().any(|to| to == 0));
         if !is_target {
             if let Some(first) = self.code.blocks.first_mut() {
                 first.insts.splice(0..0, early);
@@ -163,19 +169,21 @@ impl Selector<'_> {
         }
         let up = |to: &mut u32| *to += 1;
         for block in &mut self.code.blocks {
-            match &mut block.end {
-                End::Jump(to) => up(to),
-                End::Branch { then, otherwise, .. } => {
+            match &mut block.terminator {
+                Terminator::Jump(to) => up(to),
+                Terminator::Branch { then, otherwise, .. } => {
                     up(then);
                     up(otherwise);
                 }
-                End::Table { targets, .. } => targets.iter_mut().for_each(up),
-                End::Return(_) | End::Unreachable => {}
+                Terminator::Table { targets, .. } => targets.iter_mut().for_each(up),
+                Terminator::Return(_) | Terminator::Unreachable => {}
             }
         }
         self.code.tables.iter_mut().flatten().for_each(up);
         let span = self.function.span;
-        self.code.blocks.insert(0, Block { insts: early, end: End::Jump(1), depth: 0, unrolled: 1, span });
+        self.code
+            .blocks
+            .insert(0, Block { insts: early, terminator: Terminator::Jump(1), depth: 0, unrolled: 1, span });
     }
 
     fn parameters(&mut self) {
@@ -205,24 +213,24 @@ impl Selector<'_> {
             return reg;
         }
         let is_pair = matches!(self.function.values[value], Class::I64 | Class::F64);
-        let reg = self.code.reg(Info { is_pair, ..Info::default() });
+        let reg = self.code.reg(VRegInfo { is_pair, ..VRegInfo::default() });
         self.values[value] = Some(reg);
         reg
     }
 
     /// A new register for a word.
     fn word(&mut self) -> VReg {
-        self.code.reg(Info::default())
+        self.code.reg(VRegInfo::default())
     }
 
     /// A new register for a pair.
     fn pair(&mut self) -> VReg {
-        self.code.reg(Info { is_pair: true, ..Info::default() })
+        self.code.reg(VRegInfo { is_pair: true, ..VRegInfo::default() })
     }
 
     /// A new register that is tested.
     fn condition(&mut self) -> VReg {
-        self.code.reg(Info { is_condition: true, ..Info::default() })
+        self.code.reg(VRegInfo { is_condition: true, ..VRegInfo::default() })
     }
 
     fn push(&mut self, kind: Kind, dst: impl Into<Arg>, src1: impl Into<Arg>, src2: impl Into<Arg>) {

@@ -3,10 +3,10 @@
 use cranelift_entity::SecondaryMap;
 
 use super::Selector;
-use crate::c67x::code::{Arg, Base, End, MemoryPlace, VReg, Value};
+use crate::c67x::code::{Arg, Base, MemoryPlace, Terminator, VReg, Value};
 use crate::c67x::forms::Kind;
 use crate::ir::function::{Block, Function};
-use crate::ir::inst::{InstKind, Operand, Terminator, ValueId};
+use crate::ir::inst::{self, InstKind, Operand, ValueId};
 use crate::ir::operators::CompareOp;
 
 /// The comparison at the end of a block, if only its branch uses it.
@@ -15,7 +15,7 @@ pub(super) fn fused_compare(
     block: &Block,
     uses: &SecondaryMap<ValueId, u32>,
 ) -> Option<Compare> {
-    let Terminator::Branch { condition: Operand::Value(condition), .. } = block.terminator else {
+    let inst::Terminator::Branch { condition: Operand::Value(condition), .. } = block.terminator else {
         return None;
     };
     let InstKind::Compare { op, dst, a, b } = block.insts.last()?.kind else { return None };
@@ -32,23 +32,23 @@ pub(super) struct Compare {
 }
 
 impl Selector<'_> {
-    pub(super) fn terminator(&mut self, terminator: &Terminator, fused: Option<Compare>) -> End {
+    pub(super) fn terminator(&mut self, terminator: &inst::Terminator, fused: Option<Compare>) -> Terminator {
         match *terminator {
-            Terminator::Jump(to) => End::Jump(self.numbers[to]),
-            Terminator::Branch { condition, then, otherwise } => {
+            inst::Terminator::Jump(to) => Terminator::Jump(self.numbers[to]),
+            inst::Terminator::Branch { condition, then, otherwise } => {
                 let (then, otherwise) = (self.numbers[then], self.numbers[otherwise]);
                 if then == otherwise {
-                    return End::Jump(then);
+                    return Terminator::Jump(then);
                 }
                 let (condition, negated) = self.tested(condition, fused);
-                End::Branch { condition, negated, then, otherwise }
+                Terminator::Branch { condition, negated, then, otherwise }
             }
-            Terminator::Table { index, ref targets, default } => {
+            inst::Terminator::Table { index, ref targets, default } => {
                 let targets = targets.iter().map(|to| self.numbers[*to]).collect();
                 self.table(index, targets, self.numbers[default])
             }
-            Terminator::Return(value) => End::Return(value.map(|value| self.returned(value))),
-            Terminator::Unreachable => End::Unreachable,
+            inst::Terminator::Return(value) => Terminator::Return(value.map(|value| self.returned(value))),
+            inst::Terminator::Unreachable => Terminator::Unreachable,
         }
     }
 
@@ -83,7 +83,7 @@ impl Selector<'_> {
     }
 
     /// A jump through a table of addresses; the block is split where the index is found to be too large.
-    fn table(&mut self, index: Operand, targets: Vec<u32>, default: u32) -> End {
+    fn table(&mut self, index: Operand, targets: Vec<u32>, default: u32) -> Terminator {
         let table = self.code.tables.len() as u32;
         let count = targets.len() as i32;
         let is_inside = self.condition();
@@ -100,6 +100,6 @@ impl Selector<'_> {
         let mut all = targets;
         all.insert(0, default);
         self.code.tables.push(all.clone());
-        End::Table { address, targets: all }
+        Terminator::Table { address, targets: all }
     }
 }

@@ -9,7 +9,7 @@ use vm::dsp::Core;
 
 use super::machine::{Ram, scramble};
 use crate::c67x::abi;
-use crate::link::Linked;
+use crate::link::LinkedProgram;
 
 pub(super) struct Firmware {
     names: BTreeMap<u32, String>,
@@ -18,7 +18,7 @@ pub(super) struct Firmware {
 }
 
 impl Firmware {
-    pub(super) fn new(linked: &Linked) -> Self {
+    pub(super) fn new(linked: &LinkedProgram) -> Self {
         let names = linked.firmware.imports.iter().map(|import| (import.address.get(), import.name.clone()));
         Self { names: names.collect(), console: String::new(), calls: 0 }
     }

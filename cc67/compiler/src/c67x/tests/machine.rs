@@ -5,7 +5,7 @@ use vm::dsp::{Clock, Core, Halt, Memory};
 use vm::trap::TrapKind;
 
 use super::firmware;
-use crate::link::Linked;
+use crate::link::LinkedProgram;
 
 const PAGE: usize = 4096;
 
@@ -100,7 +100,7 @@ pub(super) struct Call {
 
 impl Call {
     /// Prepares the call at the first packet of the function, with random values in the registers.
-    pub(super) fn new(linked: &Linked, name: &str) -> Self {
+    pub(super) fn new(linked: &LinkedProgram, name: &str) -> Self {
         let function = linked.symbols.iter().find(|symbol| symbol.name == name).expect("a function");
         let mut core = Core::new(function.address.get());
         scramble(&mut core, !0, 1);
@@ -128,7 +128,7 @@ impl Call {
 }
 
 /// Memory with a program.
-fn loaded(linked: &Linked) -> Ram {
+fn loaded(linked: &LinkedProgram) -> Ram {
     let mut ram = Ram::default();
     let (text, data) = (&linked.text, &linked.data);
     ram.set_bytes(text.address.get(), &text.bytes);
@@ -138,7 +138,7 @@ fn loaded(linked: &Linked) -> Ram {
 }
 
 /// Runs `main` to its end; panics if the program does something forbidden.
-pub(super) fn run(linked: &Linked) -> Run {
+pub(super) fn run(linked: &LinkedProgram) -> Run {
     let mut ram = loaded(linked);
     let mut core = Core::new(linked.entry.get());
     let mut firmware = firmware::Firmware::new(linked);

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use kmotiondef::ThreadId;
 
-use crate::link::Linked;
+use crate::link::LinkedProgram;
 use crate::passes::Level;
 use crate::pp;
 use crate::target::Target;
@@ -29,7 +29,7 @@ impl pp::Files for NoFiles {
 }
 
 /// Compiles and links for thread 1.
-fn build(source: &str, level: Level) -> Linked {
+fn build(source: &str, level: Level) -> LinkedProgram {
     let options = Options { target: Target::C67x, level, ..Options::default() };
     let mut compilation = compile(Path::new("test.c"), source.as_bytes().to_vec(), &options, &NoFiles);
     let linked = compilation.link(ThreadId::new(1).expect("thread 1"), &options);

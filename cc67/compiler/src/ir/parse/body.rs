@@ -16,7 +16,7 @@ use super::{Functions, ParseError, Symbols};
 use crate::source::Span;
 
 /// A result, or the error in the line.
-pub(super) type Read<T> = Result<T, String>;
+pub(super) type LineResult<T> = Result<T, String>;
 
 /// No place in a source: the text of a function has no positions.
 const NOWHERE: Span = Span::new(0, 0);
@@ -56,7 +56,7 @@ pub(super) struct Body {
 
 impl Body {
     /// Reads the text after the word `function`.
-    pub(super) fn begin(line: &mut Cursor<'_>, at: usize, unit: &mut Functions) -> Read<Self> {
+    pub(super) fn begin(line: &mut Cursor<'_>, at: usize, unit: &mut Functions) -> LineResult<Self> {
         let name = line.word()?;
         let symbol = unit.symbols.intern(name.strip_prefix('@').unwrap_or(name));
         let mut body = Self {
@@ -89,7 +89,7 @@ impl Body {
     }
 
     /// Reads a line of the function.
-    pub(super) fn line(&mut self, line: &mut Cursor<'_>, at: usize, symbols: &mut Symbols) -> Read<()> {
+    pub(super) fn line(&mut self, line: &mut Cursor<'_>, at: usize, symbols: &mut Symbols) -> LineResult<()> {
         self.at = at;
         let mut ahead = *line;
         let word = ahead.word()?;
@@ -116,7 +116,7 @@ impl Body {
     }
 
     /// A line that begins with `word:`: a block, a slot, the class of a value.
-    fn declaration(&mut self, word: &str, line: &mut Cursor<'_>) -> Read<()> {
+    fn declaration(&mut self, word: &str, line: &mut Cursor<'_>) -> LineResult<()> {
         if let Some(block) = number::<BlockId>(word, "block")? {
             if let Some(open) = self.open {
                 return Err(format!("{open} does not end before this"));
@@ -150,7 +150,7 @@ impl Body {
     }
 
     /// Records the class of a value.
-    pub(super) fn say(&mut self, value: ValueId, class: Class) -> Read<()> {
+    pub(super) fn say(&mut self, value: ValueId, class: Class) -> LineResult<()> {
         self.classes
             .say(value, class)
             .map_err(|before| format!("{value} is {before} elsewhere, {class} here"))

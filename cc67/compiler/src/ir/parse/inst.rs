@@ -6,7 +6,7 @@ use super::super::inst::{
 };
 use super::super::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp, Width};
 use super::Symbols;
-use super::body::{Body, Read};
+use super::body::{Body, LineResult};
 use super::cursor::{Cursor, number};
 
 /// The content of a line of a block.
@@ -18,7 +18,7 @@ pub(super) enum Content {
 }
 
 /// Reads a line of a block.
-pub(super) fn content(line: &mut Cursor<'_>, body: &mut Body, symbols: &mut Symbols) -> Read<Content> {
+pub(super) fn content(line: &mut Cursor<'_>, body: &mut Body, symbols: &mut Symbols) -> LineResult<Content> {
     let mut reader = InstReader { line, body, symbols };
     let mut ahead = *reader.line;
     let first = ahead.word()?;
@@ -41,7 +41,7 @@ struct InstReader<'r, 'l> {
 
 impl InstReader<'_, '_> {
     /// Parses an assignment after `dst =`.
-    fn assignment(&mut self, dst: ValueId) -> Read<Content> {
+    fn assignment(&mut self, dst: ValueId) -> LineResult<Content> {
         let mut ahead = *self.line;
         let word = ahead.word()?;
         let (name, suffix) = word.split_once('.').unwrap_or((word, ""));
@@ -83,7 +83,7 @@ impl InstReader<'_, '_> {
         Ok(Content::Inst(kind))
     }
 
-    fn copy(&mut self, dst: ValueId) -> Read<InstKind> {
+    fn copy(&mut self, dst: ValueId) -> LineResult<InstKind> {
         let src = self.operand()?;
         match src {
             Operand::Value(src) => self.body.classes.copy(dst, src),
@@ -93,7 +93,7 @@ impl InstReader<'_, '_> {
     }
 
     /// A line that writes no value; its first word has been read.
-    fn statement(&mut self, word: &str) -> Read<Content> {
+    fn statement(&mut self, word: &str) -> LineResult<Content> {
         let (name, suffix) = word.split_once('.').unwrap_or((word, ""));
         Ok(match name {
             "store" => {
@@ -129,7 +129,7 @@ impl InstReader<'_, '_> {
         })
     }
 
-    fn branch(&mut self) -> Read<Terminator> {
+    fn branch(&mut self) -> LineResult<Terminator> {
         let condition = self.operand()?;
         self.line.expect(",")?;
         let then = self.block()?;
@@ -137,7 +137,7 @@ impl InstReader<'_, '_> {
         Ok(Terminator::Branch { condition, then, otherwise: self.block()? })
     }
 
-    fn table(&mut self) -> Read<Terminator> {
+    fn table(&mut self) -> LineResult<Terminator> {
         let index = self.operand()?;
         self.line.expect(",")?;
         self.line.expect("[")?;
@@ -152,14 +152,14 @@ impl InstReader<'_, '_> {
         Ok(Terminator::Table { index, targets: targets.into(), default: self.block()? })
     }
 
-    fn block(&mut self) -> Read<BlockId> {
+    fn block(&mut self) -> LineResult<BlockId> {
         let block = self.line.entity("block")?;
         self.body.target(block);
         Ok(block)
     }
 
     /// A call; the signature is put in later.
-    fn call(&mut self, dst: Option<ValueId>) -> Read<InstKind> {
+    fn call(&mut self, dst: Option<ValueId>) -> LineResult<InstKind> {
         let callee = if self.line.take("[") {
             let target = self.operand()?;
             self.line.expect("]")?;
@@ -185,13 +185,13 @@ impl InstReader<'_, '_> {
         Ok(InstKind::Call { callee, arguments, signature: SignatureId::from_u32(0), dst: dst.into() })
     }
 
-    fn pair(&mut self) -> Read<(Operand, Operand)> {
+    fn pair(&mut self) -> LineResult<(Operand, Operand)> {
         let a = self.operand()?;
         self.line.expect(",")?;
         Ok((a, self.operand()?))
     }
 
-    fn operand(&mut self) -> Read<Operand> {
+    fn operand(&mut self) -> LineResult<Operand> {
         let word = self.line.word()?;
         if let Some(value) = number(word, "v")? {
             self.body.mention(value);
@@ -208,7 +208,7 @@ impl InstReader<'_, '_> {
     }
 
     /// The bits of a floating constant.
-    fn bits(&mut self, class: &str) -> Read<Operand> {
+    fn bits(&mut self, class: &str) -> LineResult<Operand> {
         self.line.expect("(")?;
         let word = self.line.word()?;
         self.line.expect(")")?;
@@ -220,7 +220,7 @@ impl InstReader<'_, '_> {
         constant.map(Operand::from).ok_or_else(|| format!("`{word}` is not the bits of an {class}"))
     }
 
-    fn address(&mut self) -> Read<Address> {
+    fn address(&mut self) -> LineResult<Address> {
         self.line.expect("[")?;
         let word = self.line.word()?;
         let base = if let Some(digits) = word.strip_prefix("0x") {
@@ -246,11 +246,11 @@ impl InstReader<'_, '_> {
     }
 }
 
-fn class(name: &str) -> Read<Class> {
+fn class(name: &str) -> LineResult<Class> {
     Class::from_name(name).ok_or_else(|| format!("a class is expected after the `.`, not `{name}`"))
 }
 
-fn width(name: &str) -> Read<Width> {
+fn width(name: &str) -> LineResult<Width> {
     Width::from_name(name).ok_or_else(|| format!("a width is expected after the `.`, not `{name}`"))
 }
 

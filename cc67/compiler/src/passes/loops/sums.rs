@@ -16,7 +16,7 @@ const WORTH: u32 = 2;
 
 /// An expression that grows by the same amount in each iteration.
 #[derive(Clone, Copy, Debug)]
-struct Linear {
+struct LinearExpression {
     /// The counter it follows.
     counter: ValueId,
     /// By how much it grows when the counter grows by 1.
@@ -96,8 +96,8 @@ impl Worker<'_> {
         &self,
         range: LoopRange,
         counters: &BTreeMap<ValueId, i32>,
-    ) -> BTreeMap<ValueId, Linear> {
-        let mut linear: BTreeMap<ValueId, Linear> = BTreeMap::new();
+    ) -> BTreeMap<ValueId, LinearExpression> {
+        let mut linear: BTreeMap<ValueId, LinearExpression> = BTreeMap::new();
         for id in &self.function.layout[range.first..=range.last] {
             for inst in &self.function.blocks[*id].insts {
                 let InstKind::Binary { op, dst, a, b } = inst.kind else { continue };
@@ -115,7 +115,7 @@ impl Worker<'_> {
                     (None | Some(_), None | Some(_)) => continue,
                 };
                 if let Some((counter, scale, cost)) = self.combined(op, grows, other) {
-                    linear.insert(dst, Linear { counter, scale, cost, kind: inst.kind });
+                    linear.insert(dst, LinearExpression { counter, scale, cost, kind: inst.kind });
                 }
             }
         }
@@ -153,7 +153,7 @@ impl Worker<'_> {
     }
 
     /// The linear values that are read by anything except another linear value.
-    fn read_as_such(&self, linear: &BTreeMap<ValueId, Linear>) -> EntitySet<ValueId> {
+    fn read_as_such(&self, linear: &BTreeMap<ValueId, LinearExpression>) -> EntitySet<ValueId> {
         let mut read = EntitySet::with_capacity(self.function.values.len());
         let mut note = |operand: Operand| {
             if let Some(value) = operand.as_value() {
@@ -178,7 +178,12 @@ impl Worker<'_> {
     }
 
     /// The value of `operand` at the start of the loop, computed before it.
-    fn start(&mut self, linear: &BTreeMap<ValueId, Linear>, operand: Operand, inst: &Inst) -> Operand {
+    fn start(
+        &mut self,
+        linear: &BTreeMap<ValueId, LinearExpression>,
+        operand: Operand,
+        inst: &Inst,
+    ) -> Operand {
         let Some(sum) = operand.as_value().and_then(|value| linear.get(&value)).copied() else {
             return operand;
         };

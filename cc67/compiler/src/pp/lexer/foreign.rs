@@ -12,13 +12,13 @@ use super::{Lexer, LexerContext};
 
 /// The complaints already reported for this file.
 #[derive(Debug, Default)]
-pub(super) struct Complained {
+pub(super) struct ReportedComplaints {
     space: bool,
     control: bool,
 }
 
 /// The meaning of a character.
-enum Meaning {
+enum CharacterMeaning {
     Space,
     Quote(u8),
     Punctuator(TokenKind, &'static str),
@@ -29,7 +29,7 @@ impl Lexer {
     /// Skips a space that is none in C.
     pub(super) fn skip_foreign_space(&mut self, cx: &mut LexerContext<'_>) -> bool {
         let (character, length) = self.character();
-        if !matches!(meaning(character), Meaning::Space) {
+        if !matches!(meaning(character), CharacterMeaning::Space) {
             return false;
         }
         if !self.complained.space {
@@ -44,7 +44,7 @@ impl Lexer {
 
     /// Reports whether the next bytes are a character that can be mistaken for a letter.
     pub(super) fn is_foreign_letter(&self) -> bool {
-        matches!(meaning(self.character().0), Meaning::Letter)
+        matches!(meaning(self.character().0), CharacterMeaning::Letter)
     }
 
     /// Reads a name that continues with other letters.
@@ -54,7 +54,7 @@ impl Lexer {
             let (character, length) = self.character();
             if character.is_ascii() && is_name_byte(self.byte(self.at)) {
                 self.at += 1;
-            } else if !character.is_ascii() && matches!(meaning(character), Meaning::Letter) {
+            } else if !character.is_ascii() && matches!(meaning(character), CharacterMeaning::Letter) {
                 first = first.or(Some((self.at, self.at + length, character)));
                 self.at += length;
             } else {
@@ -86,15 +86,15 @@ impl Lexer {
             return Some(Token::new(TokenKind::Stray, flags, self.span_from(lo)));
         }
         match meaning(character) {
-            Meaning::Quote(quote) => Some(self.curly(quote, character, length, flags, cx)),
-            Meaning::Punctuator(kind, text) => {
+            CharacterMeaning::Quote(quote) => Some(self.curly(quote, character, length, flags, cx)),
+            CharacterMeaning::Punctuator(kind, text) => {
                 self.at += length;
                 let span = self.span_from(lo);
                 let message = format!("{} outside a comment or string", name_of(character));
                 cx.sink.report(Diagnostic::error(span, message).help(format!("write `{text}`")));
                 Some(Token::new(kind, flags, span))
             }
-            Meaning::Letter | Meaning::Space => Some(self.foreign_name(lo, flags, cx)),
+            CharacterMeaning::Letter | CharacterMeaning::Space => Some(self.foreign_name(lo, flags, cx)),
         }
     }
 
@@ -136,7 +136,7 @@ impl Lexer {
         let behind = self.at;
         while self.at < line_end && closing.is_none() {
             let (next, length) = self.character();
-            let is_partner = matches!(meaning(next), Meaning::Quote(other) if other == quote);
+            let is_partner = matches!(meaning(next), CharacterMeaning::Quote(other) if other == quote);
             self.at += length;
             closing = (is_partner || next == char::from(quote)).then_some(self.at);
         }
@@ -180,22 +180,22 @@ fn from_windows(byte: u8) -> char {
     }
 }
 
-fn meaning(character: char) -> Meaning {
+fn meaning(character: char) -> CharacterMeaning {
     match character {
         '\u{A0}' | '\u{2000}'..='\u{200B}' | '\u{202F}' | '\u{205F}' | '\u{3000}' | '\u{FEFF}' => {
-            Meaning::Space
+            CharacterMeaning::Space
         }
-        '\u{201C}'..='\u{201F}' | '\u{AB}' | '\u{BB}' => Meaning::Quote(b'"'),
-        '\u{2018}'..='\u{201B}' | '\u{B4}' => Meaning::Quote(b'\''),
-        '\u{2010}'..='\u{2015}' | '\u{2212}' => Meaning::Punctuator(TokenKind::Minus, "-"),
-        '\u{D7}' => Meaning::Punctuator(TokenKind::Star, "*"),
-        '\u{F7}' => Meaning::Punctuator(TokenKind::Slash, "/"),
-        '\u{2026}' => Meaning::Punctuator(TokenKind::Ellipsis, "..."),
-        '\u{2264}' => Meaning::Punctuator(TokenKind::LessEqual, "<="),
-        '\u{2265}' => Meaning::Punctuator(TokenKind::GreaterEqual, ">="),
-        '\u{2260}' => Meaning::Punctuator(TokenKind::NotEqual, "!="),
-        '\u{37E}' | '\u{FF1B}' => Meaning::Punctuator(TokenKind::Semicolon, ";"),
-        _ => Meaning::Letter,
+        '\u{201C}'..='\u{201F}' | '\u{AB}' | '\u{BB}' => CharacterMeaning::Quote(b'"'),
+        '\u{2018}'..='\u{201B}' | '\u{B4}' => CharacterMeaning::Quote(b'\''),
+        '\u{2010}'..='\u{2015}' | '\u{2212}' => CharacterMeaning::Punctuator(TokenKind::Minus, "-"),
+        '\u{D7}' => CharacterMeaning::Punctuator(TokenKind::Star, "*"),
+        '\u{F7}' => CharacterMeaning::Punctuator(TokenKind::Slash, "/"),
+        '\u{2026}' => CharacterMeaning::Punctuator(TokenKind::Ellipsis, "..."),
+        '\u{2264}' => CharacterMeaning::Punctuator(TokenKind::LessEqual, "<="),
+        '\u{2265}' => CharacterMeaning::Punctuator(TokenKind::GreaterEqual, ">="),
+        '\u{2260}' => CharacterMeaning::Punctuator(TokenKind::NotEqual, "!="),
+        '\u{37E}' | '\u{FF1B}' => CharacterMeaning::Punctuator(TokenKind::Semicolon, ";"),
+        _ => CharacterMeaning::Letter,
     }
 }
 
@@ -205,7 +205,7 @@ fn name_of(character: char) -> String {
         '\u{A0}' => "no-break space",
         '\u{FEFF}' => "byte order mark",
         '\u{200B}' => "zero-width space",
-        _ if matches!(meaning(character), Meaning::Space) => "typographic space",
+        _ if matches!(meaning(character), CharacterMeaning::Space) => "typographic space",
         _ => return format!("character `{character}` (U+{:04X})", u32::from(character)),
     };
     format!("{name} (U+{:04X})", u32::from(character))

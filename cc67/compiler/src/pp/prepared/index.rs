@@ -42,9 +42,9 @@ pub(super) static INDEX: Index = Index::of_texts();
 
 /// A place in one of the texts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct At(u32);
+pub(super) struct TextPosition(u32);
 
-impl At {
+impl TextPosition {
     const NOWHERE: Self = Self(u32::MAX);
     const OFFSET_BITS: u32 = 24;
 
@@ -70,28 +70,28 @@ impl At {
 /// A name in the texts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct IndexedName {
-    spelling: At,
+    spelling: TextPosition,
     length: u8,
     /// It is read when the headers are: as the name of a macro, or within a declaration.
     is_of_headers: bool,
     /// True if a declaration of the headers changes its meaning when a program defines a macro with the name.
     pub(super) is_in_declaration: bool,
-    definition: At,
+    definition: TextPosition,
     piece: u16,
 }
 
 impl IndexedName {
     const NONE: Self = Self {
-        spelling: At::NOWHERE,
+        spelling: TextPosition::NOWHERE,
         length: 0,
         is_of_headers: false,
         is_in_declaration: false,
-        definition: At::NOWHERE,
+        definition: TextPosition::NOWHERE,
         piece: u16::MAX,
     };
 
     /// The position of the name in the `#define` of a macro.
-    pub(super) const fn definition(&self) -> Option<At> {
+    pub(super) const fn definition(&self) -> Option<TextPosition> {
         if self.definition.is_nowhere() { None } else { Some(self.definition) }
     }
 
@@ -111,7 +111,7 @@ impl IndexedName {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
     /// Its first byte.
-    pub(super) start: At,
+    pub(super) start: TextPosition,
     /// Offset of the byte after its last.
     pub(super) end: usize,
 }
@@ -155,7 +155,7 @@ impl Index {
     }
 
     const fn of_texts() -> Self {
-        let nothing = Piece { start: At::NOWHERE, end: 0 };
+        let nothing = Piece { start: TextPosition::NOWHERE, end: 0 };
         let head = HeadPlaces { included_at: (0, 0, 0), guard: (0, 0) };
         let mut index = Self {
             slots: [0; SLOTS],
@@ -178,7 +178,7 @@ impl Index {
         while at < text.len() {
             let name = past_word(text, at, b"#define ");
             let word = self.enter(PREDEFINED, name);
-            self.words[word].definition = At::new(PREDEFINED, name);
+            self.words[word].definition = TextPosition::new(PREDEFINED, name);
             at = line_end(text, name) + 1;
         }
     }
@@ -201,7 +201,7 @@ impl Index {
             let name = past_word(text, at, b"#define ");
             let word = self.enter(number, name);
             assert!(self.words[word].definition.is_nowhere(), "a macro of the headers is defined twice");
-            self.words[word].definition = At::new(number, name);
+            self.words[word].definition = TextPosition::new(number, name);
             self.words[word].is_of_headers = true;
         } else if is_at(text, at, b"#ifndef ") {
             // As long as no macro of the program has a name of the headers, the lines count.
@@ -258,7 +258,7 @@ impl Index {
             }
             at = past_space(text, at + 1);
         }
-        self.pieces[self.piece_count] = Piece { start: At::new(number, start), end: at + 1 };
+        self.pieces[self.piece_count] = Piece { start: TextPosition::new(number, start), end: at + 1 };
         self.piece_count += 1;
         at + 1
     }
@@ -278,7 +278,7 @@ impl Index {
     }
 
     /// Marks the names in the body of a macro; returns whether any was not marked before.
-    const fn spread_body(&mut self, definition: At) -> bool {
+    const fn spread_body(&mut self, definition: TextPosition) -> bool {
         let text = TEXTS[definition.text()];
         let mut at = name_end(text, definition.offset());
         let (end, mut is_new) = (line_end(text, at), false);
@@ -308,7 +308,7 @@ impl Index {
             return word;
         }
         let word = self.count;
-        let spelling = At::new(number, at);
+        let spelling = TextPosition::new(number, at);
         self.words[word] = IndexedName { spelling, length: (end - at) as u8, ..IndexedName::NONE };
         self.count += 1;
         self.slots[slot] = self.count as u16;

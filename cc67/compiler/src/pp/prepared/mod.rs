@@ -28,10 +28,10 @@ use crate::source::{FileId, Span};
 use super::engine::{OpenFile, Preprocessor};
 use super::lexer::Lexer;
 use super::limits;
-use super::macros::{Builtin, MacroId, Standing};
+use super::macros::{Builtin, MacroId, MacroState};
 use super::token::{Token, TokenKind};
 
-use index::{At, BOARD, INDEX, PREDEFINED, Piece, TEXTS};
+use index::{BOARD, INDEX, PREDEFINED, Piece, TEXTS, TextPosition};
 use state::HeaderState;
 
 /// The variable that the code of a call of `ThreadDone` uses without naming it: both ways to read the headers declare it.
@@ -41,9 +41,9 @@ impl Preprocessor<'_> {
     /// The current definition of a name; the prepared texts are searched on its first use.
     pub(super) fn find_macro(&mut self, name: Name) -> Option<MacroId> {
         match self.macros.standing(name) {
-            Standing::Defined(id) => (!self.prepared.in_declaration || self.is_prepared(id)).then_some(id),
-            Standing::Free | Standing::Undefined => None,
-            Standing::Unknown => self.find_prepared(name),
+            MacroState::Defined(id) => (!self.prepared.in_declaration || self.is_prepared(id)).then_some(id),
+            MacroState::Free | MacroState::Undefined => None,
+            MacroState::Unknown => self.find_prepared(name),
         }
     }
 
@@ -185,7 +185,7 @@ impl Preprocessor<'_> {
     }
 
     /// Reads the definition whose name is at a position, if its text was begun.
-    fn define_at(&mut self, at: At) {
+    fn define_at(&mut self, at: TextPosition) {
         let end = TEXTS.get(at.text()).map_or(0, |text| text.len());
         if self.open_range(at.text(), at.offset(), end) {
             if let Some((lexer, _)) = self.lexer() {

@@ -7,7 +7,7 @@ use super::index::TEXTS;
 
 /// The texts in one compilation.
 #[derive(Debug)]
-pub(in crate::pp) struct Prepared {
+pub(in crate::pp) struct PreparedState {
     /// The files that were opened.
     pub(super) files: [Option<FileId>; TEXTS.len()],
     pub(super) headers: HeaderState,
@@ -30,7 +30,7 @@ pub(super) enum HeaderState {
     Wrong,
 }
 
-impl Prepared {
+impl PreparedState {
     pub(in crate::pp) fn new(headers: Headers) -> Self {
         let headers = match headers {
             Headers::Whole => HeaderState::Whole,

@@ -6,20 +6,20 @@ use runtime::surroundings::{Instant, Surroundings};
 
 /// Surroundings whose time begins when the programs start.
 #[derive(Clone, Debug)]
-pub(super) struct Attached {
+pub(super) struct DelayedSurroundings {
     pub(super) surroundings: Surroundings,
     /// The cycle since power-up at which the time of the surroundings is 0.
     pub(super) origin: u64,
 }
 
-impl Attached {
+impl DelayedSurroundings {
     /// The time since they began.
     pub(super) fn since(&self, cycle: u64) -> Cycles {
         Cycles::new(i64::try_from(cycle.saturating_sub(self.origin)).unwrap_or(i64::MAX))
     }
 }
 
-impl ExternalHardware for Attached {
+impl ExternalHardware for DelayedSurroundings {
     fn read(&mut self, register: usize, is_byte: bool, now: u64) -> Option<u16> {
         let now = self.since(now);
         self.surroundings.read(register, is_byte, now)

@@ -2,23 +2,23 @@
 
 use std::sync::Arc;
 
-use boot::{BootedBoard, Halted, Sent};
+use boot::{BootedBoard, HaltError, SentKind};
 use kmotiondef::variables::PERSIST;
 use kmotiondef::{GuestAddr, ThreadId};
 use runtime::surroundings::Surroundings;
 use runtime::{Config, MachineFile};
-use vm::scheduler::Turn;
+use vm::scheduler::SliceOwner;
 use vm::thread::ThreadState;
 
-use super::attached::Attached;
-use super::debug::Debugging;
+use super::attached::DelayedSurroundings;
+use super::debug::DebugState;
 use super::observers::Observers;
 use super::{ANSWER, BootedFirmware, BootedTarget, LoadedProgram, Silence, State, TICK};
 use crate::setup::Setup;
 use crate::{HostError, UserProgram};
 
 /// A firmware that is ready, with the loaded programs.
-struct Beginning {
+struct ReadyFirmware {
     board: BootedBoard,
     loaded: [Option<Arc<LoadedProgram>>; ThreadId::MAX as usize],
 }
@@ -46,7 +46,7 @@ impl BootedTarget {
         let mut board = firmware.board(config.flash.as_deref())?;
         board.skip_waits(config.machine.shortcuts);
         board.set_register_waits(options.timing.wait_states().map_or(0, |waits| waits.register));
-        let mut beginning = Beginning { board, loaded: Default::default() };
+        let mut beginning = ReadyFirmware { board, loaded: Default::default() };
         beginning.store(&values)?;
         for program in &programs {
             beginning.load(program)?;
@@ -54,9 +54,9 @@ impl BootedTarget {
         let starting: Vec<_> =
             programs.iter().filter(|program| program.starts).map(|program| program.thread).collect();
         beginning.settle(&starting).map_err(|error| failed(&error))?;
-        let Beginning { mut board, loaded } = beginning;
+        let ReadyFirmware { mut board, loaded } = beginning;
         let origin = board.next_tick() - TICK;
-        let early = board.take_lines().into_iter().filter(|line| line.kind == Sent::Console).collect();
+        let early = board.take_lines().into_iter().filter(|line| line.kind == SentKind::Console).collect();
         let machine = std::mem::take(&mut config.machine_file);
         let missing = missing_variable(&board);
         let attached = if missing.is_none() {
@@ -66,7 +66,7 @@ impl BootedTarget {
             if is_assisted {
                 surroundings.assist();
             }
-            Some(Attached { surroundings, origin })
+            Some(DelayedSurroundings { surroundings, origin })
         } else if stimulus.is_empty() && machine == MachineFile::default() && !is_assisted {
             None
         } else {
@@ -77,7 +77,7 @@ impl BootedTarget {
         let state = State {
             loaded,
             threads: std::array::from_fn(|_| ThreadState::Empty),
-            turn: Turn::Primary,
+            turn: SliceOwner::Primary,
             early,
             rest: Silence { ticks: 0, looks: board.looks() },
             answer: Silence { ticks: 0, looks: board.looks() },
@@ -86,7 +86,7 @@ impl BootedTarget {
             is_deaf: false,
             has_told_loss: false,
             halted: None,
-            debugging: Debugging::default(),
+            debugging: DebugState::default(),
         };
         let board = board.connect(attached);
         let mut target = Self { board, origin, offered, observers: Observers::default(), state };
@@ -108,7 +108,7 @@ impl BootedTarget {
     }
 }
 
-impl Beginning {
+impl ReadyFirmware {
     fn load(&mut self, program: &UserProgram) -> Result<(), HostError> {
         stop(&mut self.board, program.thread)?;
         self.loaded[program.thread.index()] = Some(load(&mut self.board, program)?);
@@ -132,7 +132,7 @@ impl Beginning {
     }
 
     /// Lets the firmware read the data sent, and start threads in the next tick; time 0 is one tick earlier.
-    fn settle(&mut self, starting: &[ThreadId]) -> Result<(), Halted> {
+    fn settle(&mut self, starting: &[ThreadId]) -> Result<(), HaltError> {
         let end = self.board.cycle() + ANSWER;
         while !self.board.has_read_all() && self.board.cycle() < end {
             self.board.run_to(self.board.cycle() + TICK)?;

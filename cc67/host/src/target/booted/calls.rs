@@ -6,14 +6,14 @@
 
 use std::ops::Range;
 
-use boot::Reached;
+use boot::StopPosition;
 use kmotiondef::ThreadId;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
 use vm::engine::ContextId;
 
 /// A function of a program that was entered.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Entered {
+pub(super) struct EnteredFunction {
     /// Its code.
     pub(super) code: Range<u32>,
     /// The packet that called it, or a packet near the call; `None` if the firmware called it.
@@ -28,14 +28,14 @@ pub(super) struct Entered {
 #[derive(Clone, Debug, Default)]
 struct ContextCalls {
     /// The functions entered, outermost first.
-    entered: Vec<Entered>,
+    entered: Vec<EnteredFunction>,
     /// The last known position of its program.
-    last: Option<LastSeen>,
+    last: Option<LastPosition>,
 }
 
 /// The last known position of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct LastSeen {
+pub(super) struct LastPosition {
     /// The packet.
     pub(super) at: u32,
     /// The firmware function that was called there, and its return address.
@@ -50,34 +50,35 @@ pub(super) struct OpenCalls([ContextCalls; ContextId::COUNT]);
 
 impl OpenCalls {
     /// Notes that the processor is at a packet, which may be the first of a function with this code.
-    pub(super) fn arrive(&mut self, arrival: &Reached, begins: Option<Range<u32>>) {
+    pub(super) fn arrive(&mut self, arrival: &StopPosition, begins: Option<Range<u32>>) {
         let Some(context) = context(arrival) else { return };
         let known = &mut self.0[context.index()];
-        let Reached { pc, call, back, stack, .. } = *arrival;
+        let StopPosition { pc, call, return_address: back, stack, .. } = *arrival;
         let call = call.filter(|at| is_of_program(*at));
         if !is_of_program(pc) {
-            known.last = call.map(|at| LastSeen { at, firmware: Some((pc, back)), stack }).or(known.last);
+            known.last = call.map(|at| LastPosition { at, firmware: Some((pc, back)), stack }).or(known.last);
             return;
         }
-        known.last = Some(LastSeen { at: pc, firmware: None, stack });
-        let is_left = |one: &mut Entered| stack > one.stack || stack == one.stack && !one.code.contains(&pc);
+        known.last = Some(LastPosition { at: pc, firmware: None, stack });
+        let is_left =
+            |one: &mut EnteredFunction| stack > one.stack || stack == one.stack && !one.code.contains(&pc);
         while known.entered.pop_if(is_left).is_some() {}
         let Some(code) = begins else { return };
         // A loop that jumps back to the first packet is not a call.
         if known.entered.last().is_none_or(|one| one.code != code || one.stack != stack) {
             // After an interrupt there, the previous branch is not the call.
             let call = call.or(Some(back.wrapping_sub(4))).filter(|at| is_of_program(*at));
-            known.entered.push(Entered { code, call, back, stack });
+            known.entered.push(EnteredFunction { code, call, back, stack });
         }
     }
 
     /// The functions entered and not yet left, innermost first.
-    pub(super) fn entered(&self, context: ContextId) -> impl ExactSizeIterator<Item = &Entered> {
+    pub(super) fn entered(&self, context: ContextId) -> impl ExactSizeIterator<Item = &EnteredFunction> {
         self.0[context.index()].entered.iter().rev()
     }
 
     /// Returns the last known position of a context's program.
-    pub(super) fn last(&self, context: ContextId) -> Option<LastSeen> {
+    pub(super) fn last(&self, context: ContextId) -> Option<LastPosition> {
         self.0[context.index()].last
     }
 
@@ -88,7 +89,7 @@ impl OpenCalls {
 }
 
 /// The context whose code is executed: a thread or the call-back; `None` for the firmware itself and its interrupt.
-pub(super) fn context(arrival: &Reached) -> Option<ContextId> {
+pub(super) fn context(arrival: &StopPosition) -> Option<ContextId> {
     if !arrival.is_masked {
         return arrival.thread.map(ContextId::of);
     }
@@ -109,8 +110,15 @@ mod tests {
     const INNER: Range<u32> = 0x8005_0100..0x8005_0180;
     const FIRMWARE: u32 = 0x8000_4000;
 
-    fn at(pc: u32, call: Option<u32>, stack: u32) -> Reached {
-        Reached { pc, thread: ThreadId::new(1), is_masked: false, call, back: FIRMWARE + 8, stack }
+    fn at(pc: u32, call: Option<u32>, stack: u32) -> StopPosition {
+        StopPosition {
+            pc,
+            thread: ThreadId::new(1),
+            is_masked: false,
+            call,
+            return_address: FIRMWARE + 8,
+            stack,
+        }
     }
 
     fn depth(calls: &OpenCalls) -> usize {

@@ -7,13 +7,13 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use boot::{Halted, Ran};
+use boot::{HaltError, RunOutcome};
 use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
 use kmotiondef::{CodeAddr, GuestAddr, ThreadId};
 use vm::engine::{ContextId, FrameView, Hold, HoldReason};
 use vm::memory::GuestMemory;
 
-use super::calls::{self, LastSeen, OpenCalls, is_of_program};
+use super::calls::{self, LastPosition, OpenCalls, is_of_program};
 use super::{BootedTarget, LoadedProgram};
 
 /// Bytes that are compared with their previous values.
@@ -31,7 +31,7 @@ impl WatchedBytes {
 
 /// The requests of a debugger, and the positions of programs.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Debugging {
+pub(super) struct DebugState {
     /// True if calls are tracked.
     is_on: bool,
     calls: OpenCalls,
@@ -42,7 +42,7 @@ pub(super) struct Debugging {
     hold: Option<Hold>,
 }
 
-impl Debugging {
+impl DebugState {
     pub(super) const fn begin(&mut self) {
         self.is_on = true;
     }
@@ -92,7 +92,7 @@ impl Debugging {
 
     /// The calls in progress of a context, innermost first; the innermost may be a firmware function.
     pub(super) fn frames(&self, context: ContextId) -> Vec<FrameView> {
-        let Some(LastSeen { at, firmware, stack }) = self.calls.last(context) else { return Vec::new() };
+        let Some(LastPosition { at, firmware, stack }) = self.calls.last(context) else { return Vec::new() };
         let view = |(at, continues_at, stack): (u32, u32, u32)| {
             let (at, continues_at) = (CodeAddr::new(at)?, CodeAddr::new(continues_at)?);
             Some(FrameView { at, continues_at, frame: GuestAddr::new(stack), registers: Vec::new() })
@@ -109,10 +109,10 @@ impl Debugging {
         frames.into_iter().filter_map(view).collect()
     }
 
-    fn hold(&mut self, context: ContextId, reason: HoldReason) -> Ran {
+    fn hold(&mut self, context: ContextId, reason: HoldReason) -> RunOutcome {
         self.held = Some(context);
         self.hold = Some(Hold { context, reason });
-        Ran::ToStop
+        RunOutcome::ToStop
     }
 }
 
@@ -143,7 +143,7 @@ impl BootedTarget {
     ///
     /// # Errors
     /// The firmware ran away.
-    pub(super) fn run_to(&mut self, end: u64) -> Result<Ran, Halted> {
+    pub(super) fn run_to(&mut self, end: u64) -> Result<RunOutcome, HaltError> {
         loop {
             let debugging = &self.state.debugging;
             let is_slow = debugging.stepping.is_some() || !debugging.watched.is_empty();
@@ -154,9 +154,9 @@ impl BootedTarget {
                 return Ok(ran);
             }
             match ran {
-                Ran::Through if self.board.cycle() >= end => return Ok(Ran::Through),
-                Ran::Through => {}
-                Ran::ToStop => {
+                RunOutcome::Through if self.board.cycle() >= end => return Ok(RunOutcome::Through),
+                RunOutcome::Through => {}
+                RunOutcome::ToStop => {
                     let context = self.arrive();
                     let pc = self.board.processor_state().pc;
                     if let Some(context) = context.filter(|_| self.state.debugging.breakpoints.contains(&pc))
@@ -177,7 +177,7 @@ impl BootedTarget {
     }
 
     /// Holds the program that has just executed a packet, if it is stepped or has changed a watched byte.
-    fn after_packet(&mut self, (pc, packets): (u32, u64)) -> Option<Ran> {
+    fn after_packet(&mut self, (pc, packets): (u32, u64)) -> Option<RunOutcome> {
         if self.board.packets() == packets {
             return None;
         }

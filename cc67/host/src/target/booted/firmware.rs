@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use boot::{BootedBoard, BootedSnapshot, FirmwareFile, FlashError, Halted};
+use boot::{BootedBoard, BootedSnapshot, FirmwareFile, FlashError, HaltError};
 use compiler::Options;
 use compiler::firmware::{Firmware, FirmwareFile as Symbols};
 use compiler::target::Target as CodeTarget;
@@ -24,7 +24,7 @@ pub enum FirmwareError {
     Symbols(#[from] compiler::firmware::FirmwareError),
     /// It does not start.
     #[error(transparent)]
-    Halted(#[from] Halted),
+    Halted(#[from] HaltError),
 }
 
 /// A firmware file that has started; any number of sessions can begin from it.

@@ -4,12 +4,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use boot::{BootedBoard, Halted, ProcessorState, Ran};
+use boot::{BootedBoard, HaltError, ProcessorState, RunOutcome};
 use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
 use kmotiondef::{CodeAddr, Cycles};
 use runtime::surroundings::ProgramCall;
 
-use super::attached::Attached;
+use super::attached::DelayedSurroundings;
 
 /// Cycles between two samples: a prime, so that the samples do not stay in phase with a loop or the tick.
 const PERIOD: u64 = 997;
@@ -45,20 +45,20 @@ impl Observers {
     }
 
     /// From now on, reports every call of the firmware by a program to the surroundings.
-    pub(super) fn follow_calls(&mut self, board: &mut BootedBoard<Attached>) {
+    pub(super) fn follow_calls(&mut self, board: &mut BootedBoard<DelayedSurroundings>) {
         let address = |name| board.file().address(name).map(|at| (at.get(), name));
         self.functions = FIRMWARE_FUNCTIONS.iter().filter_map(|function| address(function.name)).collect();
         self.arm(board);
     }
 
     /// Stops runs before these packets, and before no others.
-    pub(super) fn set_stops(&mut self, board: &mut BootedBoard<Attached>, stops: BTreeSet<u32>) {
+    pub(super) fn set_stops(&mut self, board: &mut BootedBoard<DelayedSurroundings>, stops: BTreeSet<u32>) {
         self.stops = stops;
         self.arm(board);
     }
 
     /// Gives the board its stops; a board restored from a snapshot has the stops of that time.
-    pub(super) fn arm(&self, board: &mut BootedBoard<Attached>) {
+    pub(super) fn arm(&self, board: &mut BootedBoard<DelayedSurroundings>) {
         board.set_stops(self.functions.keys().chain(&self.stops).copied());
     }
 
@@ -66,10 +66,14 @@ impl Observers {
     ///
     /// # Errors
     /// The firmware ran away.
-    pub(super) fn run(&mut self, board: &mut BootedBoard<Attached>, end: u64) -> Result<Ran, Halted> {
+    pub(super) fn run(
+        &mut self,
+        board: &mut BootedBoard<DelayedSurroundings>,
+        end: u64,
+    ) -> Result<RunOutcome, HaltError> {
         while let Some(next) = self.samples.as_ref().map(|samples| samples.next).filter(|next| *next < end) {
-            if self.run_calls(board, next)? == Ran::ToStop {
-                return Ok(Ran::ToStop);
+            if self.run_calls(board, next)? == RunOutcome::ToStop {
+                return Ok(RunOutcome::ToStop);
             }
             if let Some(samples) = &mut self.samples {
                 *samples.seen.entry(board.processor_state()).or_default() += 1;
@@ -79,17 +83,21 @@ impl Observers {
         self.run_calls(board, end)
     }
 
-    fn run_calls(&self, board: &mut BootedBoard<Attached>, end: u64) -> Result<Ran, Halted> {
-        while board.run_to_stop(end)? == Ran::ToStop {
+    fn run_calls(
+        &self,
+        board: &mut BootedBoard<DelayedSurroundings>,
+        end: u64,
+    ) -> Result<RunOutcome, HaltError> {
+        while board.run_to_stop(end)? == RunOutcome::ToStop {
             self.report_call(board);
             if self.stops.contains(&board.processor_state().pc) {
-                return Ok(Ran::ToStop);
+                return Ok(RunOutcome::ToStop);
             }
         }
-        Ok(Ran::Through)
+        Ok(RunOutcome::Through)
     }
 
-    fn report_call(&self, board: &mut BootedBoard<Attached>) {
+    fn report_call(&self, board: &mut BootedBoard<DelayedSurroundings>) {
         let (call, now) = (board.program_call(), board.cycle());
         let (Some(attached), memory) = board.external_and_memory() else { return };
         if let Some(call) = call

@@ -21,7 +21,7 @@ use crate::cli::report::diagnostics;
 use compiler::diag::levels::Levels;
 use compiler::image::{self, download, map};
 use compiler::inspect::Inspection;
-use compiler::link::Linked;
+use compiler::link::LinkedProgram;
 use compiler::object::{Object, SourceLine};
 use compiler::target::Target;
 use compiler::{Compilation, link_units};
@@ -234,7 +234,7 @@ impl BuildArguments {
     }
 
     /// Writes all files made from the linked program.
-    fn write_program(&self, linked: &Linked, emit: &[Emit]) -> Result<()> {
+    fn write_program(&self, linked: &LinkedProgram, emit: &[Emit]) -> Result<()> {
         let first = self.files.first().context("there is a file")?;
         let program = self.output.clone().unwrap_or_else(|| names::image(first, self.thread));
         if self.files.contains(&program) {
@@ -276,7 +276,7 @@ fn warnings(units: &[Compilation], levels: &Levels) -> usize {
 }
 
 /// The loops for which modulo scheduling exceeded its budget, one per line.
-fn without_overlap(linked: &Linked) -> String {
+fn without_overlap(linked: &LinkedProgram) -> String {
     let loops = linked.functions.iter().flat_map(|function| &function.exceeded);
     let line = |place: &SourceLine| {
         let file = linked.files.get(place.file as usize).map_or("", String::as_str);
@@ -290,7 +290,7 @@ fn without_overlap(linked: &Linked) -> String {
 
 /// The line that the vendor's editor shows after a compilation: the sizes of the sections, and the size from the first
 /// to the last byte, including gaps.
-fn sizes(linked: &Linked, warnings: usize) -> String {
+fn sizes(linked: &LinkedProgram, warnings: usize) -> String {
     let warnings = match warnings {
         0 => "No Warnings".to_owned(),
         1 => "1 Warning".to_owned(),

@@ -44,7 +44,7 @@ pub(super) struct Outcome {
     serial: Vec<u8>,
     user_data: Vec<u32>,
     /// The state before the run, for a board that was not reset.
-    before: Before,
+    before: StartState,
     /// The commanded and measured position of each axis.
     pub(super) axes: Vec<(f64, f64)>,
     /// The commanded movement of each axis during the tolerance of time, if it is still moving.
@@ -59,7 +59,7 @@ pub(super) struct Outcome {
 
 /// The state before a run of a board that was not reset.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Before {
+struct StartState {
     user_data: Vec<u32>,
     axes: Vec<(f64, f64)>,
     pins: Vec<Pin>,
@@ -94,7 +94,7 @@ impl Outcome {
     /// Records the state before the run of a board that was not reset.
     pub(super) fn look_before<T: Target>(&mut self, session: &Session<T>) {
         let (user_data, axes, pins) = (user_data(session), axes(session), pins(session));
-        self.before = Before { user_data, axes, pins };
+        self.before = StartState { user_data, axes, pins };
     }
 
     /// Drops the lines that only a simulated PC reports.
@@ -131,8 +131,12 @@ impl Outcome {
     }
 
     /// Returns the differences, in the order in which they occur, and the values within tolerance.
-    pub(super) fn differences(&self, firmware: &Self, allowed: Option<Tolerance>) -> (Vec<Difference>, Near) {
-        let mut near = Near::default();
+    pub(super) fn differences(
+        &self,
+        firmware: &Self,
+        allowed: Option<Tolerance>,
+    ) -> (Vec<Difference>, NearLines) {
+        let mut near = NearLines::default();
         let mut found = self.lines_that_differ(firmware, allowed, &mut near);
         if self.end != firmware.end {
             let page = "threads-and-time.md";
@@ -161,7 +165,7 @@ impl Outcome {
         &self,
         firmware: &Self,
         allowed: Option<Tolerance>,
-        near: &mut Near,
+        near: &mut NearLines,
     ) -> Vec<Difference> {
         let mut found = Vec::new();
         for index in 0..self.lines.len().max(firmware.lines.len()) {
@@ -267,7 +271,7 @@ impl Difference {
 
 /// Lines whose numbers differ within the tolerance.
 #[derive(Debug, Default)]
-pub(super) struct Near {
+pub(super) struct NearLines {
     count: usize,
     /// The index of the first.
     first: usize,
@@ -275,7 +279,7 @@ pub(super) struct Near {
     most: Deviation,
 }
 
-impl Near {
+impl NearLines {
     /// `self` if there are any such lines.
     pub(super) fn any(&self) -> Option<&Self> {
         (self.count > 0).then_some(self)
@@ -293,7 +297,7 @@ impl Near {
     }
 }
 
-impl fmt::Display for Near {
+impl fmt::Display for NearLines {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.count {
             1 => write!(f, "line {}: its numbers differ by {}", self.first, self.most),

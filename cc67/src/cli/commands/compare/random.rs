@@ -25,7 +25,7 @@ use clap::Args;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
 use areas::Area;
-use observation::{Difference, Observation, Subject};
+use observation::{Difference, Observation, ScenarioBoard};
 use scenario::Scenario;
 
 /// Arguments for random scenarios.
@@ -128,8 +128,8 @@ fn compared(
     scenario: &Scenario,
     firmware: &BootedFirmware,
 ) -> Result<(Option<Difference>, [Observation; 2])> {
-    let play = |subject: Subject<'_>| subject.play(scenario).with_context(|| scenario.name.clone());
-    let observations = [play(Subject::Model)?, play(Subject::Firmware(firmware))?];
+    let play = |subject: ScenarioBoard<'_>| subject.play(scenario).with_context(|| scenario.name.clone());
+    let observations = [play(ScenarioBoard::Model)?, play(ScenarioBoard::Firmware(firmware))?];
     let difference = observations[0].difference(&observations[1], scenario);
     Ok((difference, observations))
 }

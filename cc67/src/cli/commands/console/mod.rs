@@ -26,7 +26,7 @@ use screen::Screen;
 pub(super) use words::ACTIONS;
 use words::Word;
 
-use super::serve::Terms;
+use super::serve::ServeTerms;
 use crate::cli::args::attach::AttachArguments;
 use crate::cli::args::board::BoardArguments;
 use crate::cli::args::compiler::CompilerArguments;
@@ -35,7 +35,7 @@ use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::args::trace::TraceArguments;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::Pace;
-use crate::cli::report::seen::Seen;
+use crate::cli::report::seen::Failures;
 use crate::cli::report::trace::{self, Trace};
 use crate::cli::session::{BoardSession, Setup, Work};
 
@@ -95,8 +95,8 @@ pub(super) fn console(arguments: &ConsoleArguments) -> Result<Exit> {
 
 impl ConsoleArguments {
     /// Returns the terms for serving the board to programs of the PC.
-    fn terms(&self, address: &str) -> Terms<'_> {
-        Terms {
+    fn terms(&self, address: &str) -> ServeTerms<'_> {
+        ServeTerms {
             addresses: vec![address.to_owned()],
             option: "--serve",
             pace: (!self.fast).then_some(1.0),
@@ -130,7 +130,7 @@ enum Flow {
 struct Console<'a, T: Target> {
     arguments: &'a ConsoleArguments,
     rig: BoardSession<T>,
-    shown: Shown<'a>,
+    shown: EventDestinations<'a>,
     /// Pressed inputs, each with its previous level.
     pressed: BTreeMap<Bit, bool>,
 }
@@ -147,7 +147,7 @@ impl<'a, T: Target> Console<'a, T> {
         let trace = request.as_ref().map(begin).transpose()?;
         let is_script = !(io::stdin().is_terminal() && io::stdout().is_terminal());
         let screen = Screen::new(arguments.time, is_script && !arguments.realtime);
-        let shown = Shown { screen, seen: Seen::default(), trace, arguments };
+        let shown = EventDestinations { screen, failures: Failures::default(), trace, arguments };
         let mut console = Self { arguments, rig, shown, pressed: BTreeMap::new() };
         console.know_programs();
         Ok(console)
@@ -247,7 +247,7 @@ impl<'a, T: Target> Console<'a, T> {
         if let Some(why) = self.rig.session.target().lost() {
             bail!("{why}");
         }
-        Ok(self.shown.seen.exit(End::AllEnded, true).0)
+        Ok(self.shown.failures.exit(End::AllEnded, true).0)
     }
 
     /// Handles a line, or an interruption: the first one stops the programs, the second one ends the console.
@@ -360,21 +360,21 @@ impl<'a, T: Target> Console<'a, T> {
 }
 
 /// The destinations of the board's events.
-struct Shown<'a> {
+struct EventDestinations<'a> {
     screen: Screen,
     /// The events that determine the exit code.
-    seen: Seen,
+    failures: Failures,
     trace: Option<Trace>,
     arguments: &'a ConsoleArguments,
 }
 
-impl Shown<'_> {
+impl EventDestinations<'_> {
     /// Shows an event, and records it for the traces and the exit code.
     fn note(&mut self, event: &Event) {
         if let Some(trace) = &mut self.trace {
             trace.note(event);
         }
-        self.seen.note(event);
+        self.failures.note(event);
         self.screen.show(event);
     }
 

@@ -25,7 +25,7 @@ use crate::cli::args::time::seconds;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::read;
 use crate::cli::io::{output, terminal as screen};
-use crate::cli::session::{Setup, Started};
+use crate::cli::session::{Setup, StartPlan};
 
 /// The default end of a run: an hour of board time.
 const LIMIT: f64 = 3600.0;
@@ -138,7 +138,7 @@ fn note_active<T: Target>(shell: &Shell<T>) {
 
 /// Creates the setup for the arguments; `None` if a program has errors, which have been reported.
 fn setup(arguments: &DebugArguments) -> Result<Option<Setup>> {
-    let started = Started { programs: &arguments.programs, first: &arguments.sidecars.first };
+    let started = StartPlan { programs: &arguments.programs, first: &arguments.sidecars.first };
     Setup::new(started, &arguments.board, &arguments.compiler)
 }
 

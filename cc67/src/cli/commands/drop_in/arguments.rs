@@ -71,7 +71,7 @@ pub(super) struct CompileRequest {
 
 /// The way in which an option takes its argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Takes {
+enum ArgumentForm {
     /// It has no argument.
     Nothing,
     /// In the next word.
@@ -104,35 +104,35 @@ enum OptionMeaning {
 }
 
 /// All options; the first match counts.
-const OPTIONS: &[(&str, Takes, OptionMeaning)] = &[
-    ("-text", Takes::Next, OptionMeaning::Text),
-    ("-data", Takes::Next, OptionMeaning::Data),
-    ("-bss", Takes::Next, OptionMeaning::Bss),
-    ("-bench", Takes::Nothing, OptionMeaning::Nothing),
-    ("-bt", Takes::Next, OptionMeaning::Nothing),
-    ("-b", Takes::Nothing, OptionMeaning::Nothing),
-    ("-g", Takes::Nothing, OptionMeaning::Symbols),
-    ("-nostdinc", Takes::Nothing, OptionMeaning::Nothing),
-    ("-nostdlib", Takes::Nothing, OptionMeaning::Nothing),
-    ("-print-search-dirs", Takes::Nothing, OptionMeaning::SearchDirectories),
-    ("-rdynamic", Takes::Nothing, OptionMeaning::Nothing),
-    ("-r", Takes::Nothing, OptionMeaning::Nothing),
-    ("-shared", Takes::Nothing, OptionMeaning::Nothing),
-    ("-static", Takes::Nothing, OptionMeaning::Nothing),
-    ("-std=", Takes::Rest, OptionMeaning::Standard),
-    ("-c", Takes::Nothing, OptionMeaning::CompileOnly),
-    ("-o", Takes::RestOrNext, OptionMeaning::Output),
-    ("-I", Takes::RestOrNext, OptionMeaning::IncludeDirectory),
-    ("-D", Takes::RestOrNext, OptionMeaning::Define),
-    ("-U", Takes::RestOrNext, OptionMeaning::Undefine),
-    ("-L", Takes::RestOrNext, OptionMeaning::Nothing),
-    ("-B", Takes::RestOrNext, OptionMeaning::Nothing),
-    ("-l", Takes::RestOrNext, OptionMeaning::Nothing),
-    ("-Wl,", Takes::Rest, OptionMeaning::Linker),
-    ("-W", Takes::Rest, OptionMeaning::Nothing),
-    ("-O", Takes::Rest, OptionMeaning::Nothing),
-    ("-m", Takes::Rest, OptionMeaning::Nothing),
-    ("-f", Takes::Rest, OptionMeaning::Nothing),
+const OPTIONS: &[(&str, ArgumentForm, OptionMeaning)] = &[
+    ("-text", ArgumentForm::Next, OptionMeaning::Text),
+    ("-data", ArgumentForm::Next, OptionMeaning::Data),
+    ("-bss", ArgumentForm::Next, OptionMeaning::Bss),
+    ("-bench", ArgumentForm::Nothing, OptionMeaning::Nothing),
+    ("-bt", ArgumentForm::Next, OptionMeaning::Nothing),
+    ("-b", ArgumentForm::Nothing, OptionMeaning::Nothing),
+    ("-g", ArgumentForm::Nothing, OptionMeaning::Symbols),
+    ("-nostdinc", ArgumentForm::Nothing, OptionMeaning::Nothing),
+    ("-nostdlib", ArgumentForm::Nothing, OptionMeaning::Nothing),
+    ("-print-search-dirs", ArgumentForm::Nothing, OptionMeaning::SearchDirectories),
+    ("-rdynamic", ArgumentForm::Nothing, OptionMeaning::Nothing),
+    ("-r", ArgumentForm::Nothing, OptionMeaning::Nothing),
+    ("-shared", ArgumentForm::Nothing, OptionMeaning::Nothing),
+    ("-static", ArgumentForm::Nothing, OptionMeaning::Nothing),
+    ("-std=", ArgumentForm::Rest, OptionMeaning::Standard),
+    ("-c", ArgumentForm::Nothing, OptionMeaning::CompileOnly),
+    ("-o", ArgumentForm::RestOrNext, OptionMeaning::Output),
+    ("-I", ArgumentForm::RestOrNext, OptionMeaning::IncludeDirectory),
+    ("-D", ArgumentForm::RestOrNext, OptionMeaning::Define),
+    ("-U", ArgumentForm::RestOrNext, OptionMeaning::Undefine),
+    ("-L", ArgumentForm::RestOrNext, OptionMeaning::Nothing),
+    ("-B", ArgumentForm::RestOrNext, OptionMeaning::Nothing),
+    ("-l", ArgumentForm::RestOrNext, OptionMeaning::Nothing),
+    ("-Wl,", ArgumentForm::Rest, OptionMeaning::Linker),
+    ("-W", ArgumentForm::Rest, OptionMeaning::Nothing),
+    ("-O", ArgumentForm::Rest, OptionMeaning::Nothing),
+    ("-m", ArgumentForm::Rest, OptionMeaning::Nothing),
+    ("-f", ArgumentForm::Rest, OptionMeaning::Nothing),
 ];
 
 /// Parses a command line without the program's name.
@@ -140,7 +140,7 @@ const OPTIONS: &[(&str, Takes, OptionMeaning)] = &[
 /// # Errors
 /// The error, in the vendor's words if there are any.
 pub(super) fn parse(arguments: &[OsString]) -> Result<Invocation, String> {
-    let mut reading = Reading {
+    let mut reading = PartialRequest {
         request: CompileRequest { text: DEFAULT_TEXT, ..CompileRequest::default() },
         sources: Vec::new(),
         compile_only: false,
@@ -156,10 +156,10 @@ pub(super) fn parse(arguments: &[OsString]) -> Result<Invocation, String> {
         let (name, takes, meaning) = find(&word).ok_or_else(|| format!("invalid option -- '{word}'"))?;
         let joined = word.get(name.len()..).unwrap_or_default();
         let value = match takes {
-            Takes::Nothing => String::new(),
-            Takes::Rest => joined.to_owned(),
-            Takes::RestOrNext if !joined.is_empty() => joined.to_owned(),
-            Takes::Next | Takes::RestOrNext => {
+            ArgumentForm::Nothing => String::new(),
+            ArgumentForm::Rest => joined.to_owned(),
+            ArgumentForm::RestOrNext if !joined.is_empty() => joined.to_owned(),
+            ArgumentForm::Next | ArgumentForm::RestOrNext => {
                 let next = rest.next().ok_or_else(|| format!("argument to '{name}' is missing"))?;
                 next.to_string_lossy().into_owned()
             }
@@ -170,23 +170,23 @@ pub(super) fn parse(arguments: &[OsString]) -> Result<Invocation, String> {
 }
 
 /// The matching row of the table.
-fn find(word: &str) -> Option<(&'static str, Takes, OptionMeaning)> {
-    let fits = |(name, takes, _): &&(&'static str, Takes, OptionMeaning)| match takes {
-        Takes::Nothing | Takes::Next => word == *name,
-        Takes::RestOrNext | Takes::Rest => word.starts_with(name),
+fn find(word: &str) -> Option<(&'static str, ArgumentForm, OptionMeaning)> {
+    let fits = |(name, takes, _): &&(&'static str, ArgumentForm, OptionMeaning)| match takes {
+        ArgumentForm::Nothing | ArgumentForm::Next => word == *name,
+        ArgumentForm::RestOrNext | ArgumentForm::Rest => word.starts_with(name),
     };
     OPTIONS.iter().find(fits).copied()
 }
 
 /// A command line during parsing.
-struct Reading {
+struct PartialRequest {
     request: CompileRequest,
     sources: Vec<PathBuf>,
     compile_only: bool,
     search_directories: bool,
 }
 
-impl Reading {
+impl PartialRequest {
     fn option(&mut self, meaning: OptionMeaning, value: &str) -> Result<(), String> {
         let request = &mut self.request;
         match meaning {

@@ -6,11 +6,14 @@ use kmotiondef::boards::boards;
 use runtime::ModelledBoard;
 use runtime::commands::{COMMANDS, Command, KOGNA_COMMANDS, LATER_COMMANDS, boards_with};
 
-use super::Explained;
+use super::ExplainedName;
 
 /// Each command with its effect.
-pub(super) fn entries() -> impl Iterator<Item = Explained> {
-    all().map(|command| Explained { name: command.name, about: format!("Script command: {}.", command.help) })
+pub(super) fn entries() -> impl Iterator<Item = ExplainedName> {
+    all().map(|command| ExplainedName {
+        name: command.name,
+        about: format!("Script command: {}.", command.help),
+    })
 }
 
 /// The commands of all firmware versions.

@@ -11,7 +11,7 @@ use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS, FirmwareFunction, Origin}
 use kmotiondef::limits::{N_CHANNELS, N_USER_THREADS};
 use runtime::REMARKS;
 
-use super::{Explained, boards};
+use super::{ExplainedName, boards};
 use crate::cli::commands::examples;
 
 /// The page: headings with names of functions, each followed by their text.
@@ -25,8 +25,8 @@ fn shown() -> impl Iterator<Item = &'static FirmwareFunction> {
 }
 
 /// Each function with the doc comment of its row.
-pub(super) fn entries() -> impl Iterator<Item = Explained> {
-    shown().map(|function| Explained { name: function.name, about: sentence(function) })
+pub(super) fn entries() -> impl Iterator<Item = ExplainedName> {
+    shown().map(|function| ExplainedName { name: function.name, about: sentence(function) })
 }
 
 /// The names of all functions, by group.

@@ -3,25 +3,25 @@
 use std::fmt::Write as _;
 
 use kmotiondef::headers::EMBEDDED;
-use kmotiondef::start::{Start, Stored};
+use kmotiondef::start::{StartValue, StoreCondition};
 use kmotiondef::structs::{STRUCTURES, Structure, StructureField};
 use kmotiondef::variables::FIRMWARE_VARIABLES;
 
-use super::Explained;
+use super::ExplainedName;
 
 /// Each variable, field and constant with its meaning.
-pub(super) fn entries() -> Vec<Explained> {
+pub(super) fn entries() -> Vec<ExplainedName> {
     let variables =
-        FIRMWARE_VARIABLES.iter().map(|row| Explained { name: row.name, about: on_a_line(row.doc) });
+        FIRMWARE_VARIABLES.iter().map(|row| ExplainedName { name: row.name, about: on_a_line(row.doc) });
     let fields = STRUCTURES.iter().flat_map(|structure| {
-        structure.fields.iter().map(|field| Explained {
+        structure.fields.iter().map(|field| ExplainedName {
             name: field.name,
             about: format!("{}: {}", structure.name, on_a_line(field.doc)),
         })
     });
     let structures =
-        STRUCTURES.iter().map(|row| Explained { name: row.name, about: "A structure.".to_owned() });
-    let constants = constants().map(|(name, value)| Explained { name, about: value.to_owned() });
+        STRUCTURES.iter().map(|row| ExplainedName { name: row.name, about: "A structure.".to_owned() });
+    let constants = constants().map(|(name, value)| ExplainedName { name, about: value.to_owned() });
     variables.chain(fields).chain(structures).chain(constants).collect()
 }
 
@@ -76,22 +76,24 @@ fn fields(structure: &Structure) -> String {
 }
 
 /// The value at power-up, if it is a number.
-fn start(start: Start, stored: Stored) -> String {
+fn start(start: StartValue, stored: StoreCondition) -> String {
     let value = match start {
-        Start::Zero => "0".to_owned(),
-        Start::Int(value) | Start::Each(value) => value.to_string(),
-        Start::Float(value) => value.to_string(),
-        Start::Double(value) => value.to_string(),
-        Start::Text(text) => format!("\"{text}\""),
-        Start::PerAxis { first: 0, step: 1 } => "the number of the axis".to_owned(),
-        Start::PerAxis { first, step } if first < 2 => {
+        StartValue::Zero => "0".to_owned(),
+        StartValue::Int(value) | StartValue::Each(value) => value.to_string(),
+        StartValue::Float(value) => value.to_string(),
+        StartValue::Double(value) => value.to_string(),
+        StartValue::Text(text) => format!("\"{text}\""),
+        StartValue::PerAxis { first: 0, step: 1 } => "the number of the axis".to_owned(),
+        StartValue::PerAxis { first, step } if first < 2 => {
             format!("{step} times the number of the axis, plus {first}")
         }
-        Start::PerAxis { .. } | Start::Address(_) | Start::Words(_) | Start::Fields => return String::new(),
+        StartValue::PerAxis { .. } | StartValue::Address(_) | StartValue::Words(_) | StartValue::Fields => {
+            return String::new();
+        }
     };
     let kept = match stored {
-        Stored::Always => "at every power-up",
-        Stored::UnlessFlashed => "at power-up, unless `Flash` has kept another value",
+        StoreCondition::Always => "at every power-up",
+        StoreCondition::UnlessFlashed => "at power-up, unless `Flash` has kept another value",
     };
     format!("It is {value} {kept}.\n")
 }

@@ -1,6 +1,6 @@
 //! Pages on topics: one file each, described by its first paragraph.
 
-use super::{Explained, first_sentence};
+use super::{ExplainedName, first_sentence};
 
 /// Names and pages.
 const PAGES: &[(&str, &str)] = &[
@@ -35,7 +35,7 @@ pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
 }
 
 /// Each topic with its heading.
-pub(super) fn entries() -> Vec<Explained> {
+pub(super) fn entries() -> Vec<ExplainedName> {
     let about = |page: &str| first_sentence(page.lines().next().unwrap_or_default().trim_start_matches("# "));
-    PAGES.iter().map(|(name, page)| Explained { name, about: about(page) }).collect()
+    PAGES.iter().map(|(name, page)| ExplainedName { name, about: about(page) }).collect()
 }

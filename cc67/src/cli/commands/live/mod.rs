@@ -14,7 +14,7 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result, bail, ensure};
 use cc67_host::{Target, UserProgram};
 use cc67_live::{
-    Company, ListenError, Program, Server, Show, ShowEnd, ShownMachine, TestOption, TimeControl,
+    BoardUsers, ListenError, Program, Server, Show, ShowEnd, ShownMachine, TestOption, TimeControl,
 };
 use clap::{Arg, Args, Parser};
 
@@ -27,7 +27,7 @@ use crate::cli::args::time::seconds;
 use crate::cli::args::uart::UartArguments;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
-use crate::cli::session::{BoardSession, Setup, Started, Work};
+use crate::cli::session::{BoardSession, Setup, StartPlan, Work};
 use kept::KeptAccess;
 
 /// The default port, if it is free.
@@ -177,7 +177,7 @@ impl Work for LivePage<'_> {
             }
         };
         let keeper = Box::new(rig.flash_keeper());
-        let company = Company { attendant: rig.attendant.take(), keeper: Some(keeper) };
+        let company = BoardUsers { attendant: rig.attendant.take(), keeper: Some(keeper) };
         let mut check = || match arguments.setup() {
             Ok(Some(_)) => Ok(()),
             Ok(None) => Err("the board is not made again: a program has errors".to_owned()),
@@ -278,7 +278,7 @@ impl LiveArguments {
 
     /// Reads and compiles the inputs for the board; `None` if a program has errors, which have been reported.
     fn setup(&self) -> Result<Option<Setup>> {
-        let started = Started { programs: &self.programs, first: &self.sidecars.first };
+        let started = StartPlan { programs: &self.programs, first: &self.sidecars.first };
         Setup::new(started, &self.board, &self.compiler)
     }
 

@@ -17,7 +17,7 @@ use vm::interp::BytecodeEngine;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::read;
 use crate::cli::io::output;
-use crate::cli::report::seen::Seen;
+use crate::cli::report::seen::Failures;
 use crate::cli::session::Setup;
 
 /// Arguments of `cc67 test` to the runs that it starts.
@@ -33,7 +33,7 @@ pub(crate) struct ExploreArguments {
 
 /// A schedule that fails.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct Failing {
+pub(crate) struct ScheduleFailure {
     /// Its position in the list of schedules.
     pub(crate) number: u64,
     /// The schedule as text.
@@ -62,7 +62,7 @@ impl ExploreArguments {
             let Some(setup) = make()? else { return Ok(Exit::Failure) };
             let seen = run(setup.with_schedule(&schedule)?, limit, is_limited)?;
             if let Some(why) = seen.difference(&expected) {
-                let failing = Failing { number, schedule: schedule.to_string(), why };
+                let failing = ScheduleFailure { number, schedule: schedule.to_string(), why };
                 output::print(&format!("{}\n", serde_json::to_string(&failing)?))?;
             }
         }
@@ -143,7 +143,7 @@ impl ScheduledRun {
 
 fn run(setup: Setup, limit: Ticks, is_limited: bool) -> Result<ScheduledRun> {
     let mut rig = setup.rig(BytecodeEngine::default())?;
-    let (mut shown, mut seen) = (ScheduledRun::default(), Seen::default());
+    let (mut shown, mut seen) = (ScheduledRun::default(), Failures::default());
     let mut sink = |event: Event| {
         seen.note(&event);
         shown.note(&event);

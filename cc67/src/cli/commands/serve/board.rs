@@ -7,15 +7,15 @@ use cc67_host::{End, REPLY_BYTES, remark};
 use kmotiondef::Ticks;
 use runtime::{Event, EventKind, Message};
 
-use super::Terms;
-use super::link::{CONSOLE_LINES, Unread};
+use super::ServeTerms;
+use super::link::{CONSOLE_LINES, UnreadLines};
 use super::log::ExchangeLog;
-use super::served::{PageRequests, Served};
+use super::served::{PageRequests, UsableBoard};
 use super::wire::{self, WireEnd};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::now;
 use crate::cli::io::terminal;
-use crate::cli::report::seen::Seen;
+use crate::cli::report::seen::Failures;
 use crate::cli::report::trace::Trace;
 
 /// The maximum number of ticks until the board takes a line.
@@ -25,13 +25,13 @@ const REFUSED: &[u8] = b"error, ";
 
 /// A board under control, and the data received over its link.
 pub(super) struct ServedBoard<'a, T: Target> {
-    board: Served<T>,
-    terms: &'a Terms<'a>,
-    pub(super) link: Unread,
+    board: UsableBoard<T>,
+    terms: &'a ServeTerms<'a>,
+    pub(super) link: UnreadLines,
     /// True if a client receives the console.
     pub(super) is_heard: bool,
     log: Option<ExchangeLog>,
-    seen: Seen,
+    seen: Failures,
     trace: Option<Trace>,
     has_told_replies: bool,
     /// True if the board's replies are for a page.
@@ -45,7 +45,11 @@ pub(super) struct ServedBoard<'a, T: Target> {
 
 impl<'a, T: Target> ServedBoard<'a, T> {
     /// Creates the served board, recorded as the terms require.
-    pub(super) fn new(mut board: Served<T>, trace: Option<Trace>, terms: &'a Terms<'a>) -> Result<Self> {
+    pub(super) fn new(
+        mut board: UsableBoard<T>,
+        trace: Option<Trace>,
+        terms: &'a ServeTerms<'a>,
+    ) -> Result<Self> {
         let log = terms.log.map(ExchangeLog::new).transpose()?;
         let wire = terms.is_on_wire().then(WireEnd::default);
         if wire.is_some() {
@@ -54,10 +58,10 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         Ok(Self {
             board,
             terms,
-            link: Unread::default(),
+            link: UnreadLines::default(),
             is_heard: false,
             log,
-            seen: Seen::default(),
+            seen: Failures::default(),
             trace,
             has_told_replies: false,
             is_for_page: false,

@@ -7,7 +7,7 @@ use std::thread;
 use anyhow::{Context, Result, anyhow, ensure};
 
 use super::message::location;
-use super::{BoardWork, Opening, ServeArguments, Terms, end_all};
+use super::{BoardWork, ServeArguments, ServeTerms, ServerStart, end_all};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{stack, terminal};
 use crate::cli::session::Setup;
@@ -40,7 +40,7 @@ impl BoardFile {
 }
 
 /// Serves the boards of the arguments until they are ended.
-pub(super) fn serve(terms: &Terms<'_>, arguments: &ServeArguments) -> Result<Exit> {
+pub(super) fn serve(terms: &ServeTerms<'_>, arguments: &ServeArguments) -> Result<Exit> {
     refuse_for_several(terms, arguments)?;
     let boards = &arguments.serves;
     let mut works = Vec::new();
@@ -56,7 +56,7 @@ pub(super) fn serve(terms: &Terms<'_>, arguments: &ServeArguments) -> Result<Exi
         desks.push(notes);
         works.push((board, setup, inbox));
     }
-    let opening = Opening::new(terms, desks)?;
+    let opening = ServerStart::new(terms, desks)?;
     let opening = &opening;
     thread::scope(|scope| {
         let mut threads = Vec::new();
@@ -66,13 +66,15 @@ pub(super) fn serve(terms: &Terms<'_>, arguments: &ServeArguments) -> Result<Exi
             let work = move || {
                 let ended = setup.on_its_target(BoardWork { opening, inbox, index, name });
                 if ended.is_err() {
-                    end_all(&opening.desks);
+                    end_all(&opening.dispatchers);
                 }
                 ended
             };
             let started = thread::Builder::new().stack_size(stack::NEEDED).spawn_scoped(scope, work);
             threads.push(
-                started.inspect_err(|_| end_all(&opening.desks)).context("there is no thread for a board")?,
+                started
+                    .inspect_err(|_| end_all(&opening.dispatchers))
+                    .context("there is no thread for a board")?,
             );
         }
         let mut exit = Exit::Success;
@@ -87,7 +89,7 @@ pub(super) fn serve(terms: &Terms<'_>, arguments: &ServeArguments) -> Result<Exi
 }
 
 /// Rejects options that apply to a single board.
-fn refuse_for_several(terms: &Terms<'_>, arguments: &ServeArguments) -> Result<()> {
+fn refuse_for_several(terms: &ServeTerms<'_>, arguments: &ServeArguments) -> Result<()> {
     let has_page = {
         #[cfg(feature = "live")]
         {

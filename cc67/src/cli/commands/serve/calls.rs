@@ -6,7 +6,7 @@ use cc67_host::Target;
 use cc67_host::session::EXCHANGE;
 use cc67_host::{Lock, Readiness};
 
-use super::desk::{Dispatcher, Token, Waiting, Wanted};
+use super::desk::{AwaitedReply, Dispatcher, Token, WaitingClient};
 use super::link::LinkLine;
 use super::message::{Call, Reply, Request, location};
 use crate::cli::io::terminal;
@@ -36,7 +36,7 @@ impl<T: Target> Dispatcher<'_, T> {
             Call::WriteLine(line) => self.write(SILENT, line),
             Call::WriteLineWithEcho(line) => self.write(b"", line),
             Call::ReadLine(_) if !self.state.is_open => return Some(Reply::text(TIMEOUT, b"")),
-            Call::ReadLine(milliseconds) => return self.wait(client, Wanted::Line, *milliseconds),
+            Call::ReadLine(milliseconds) => return self.wait(client, AwaitedReply::Line, *milliseconds),
             Call::ListLocations => {
                 let locations: Vec<_> = (0..self.slot.boards).map(location).collect();
                 return Some(Reply::numbers(&locations));
@@ -48,7 +48,7 @@ impl<T: Target> Dispatcher<'_, T> {
                 return Some(Reply::number(Readiness::NoData as i32));
             }
             Call::CheckForReady => {
-                return self.wait(client, Wanted::Ready { after_error: false }, READY_WITHIN);
+                return self.wait(client, AwaitedReply::Ready { after_error: false }, READY_WITHIN);
             }
             Call::Lock => return Some(Reply::number(self.lock(client) as i32)),
             Call::Location => {
@@ -69,7 +69,7 @@ impl<T: Target> Dispatcher<'_, T> {
     fn exchange(&mut self, client: u64, line: &[u8]) -> Option<Reply> {
         let begin = self.board.tick().get();
         self.write(SILENT, line);
-        let reply = self.wait(client, Wanted::Answer, ANSWER_WITHIN);
+        let reply = self.wait(client, AwaitedReply::Answer, ANSWER_WITHIN);
         if !self.is_clocked() {
             let spent = self.board.tick().get() - begin;
             self.board.until(EXCHANGE.saturating_sub(spent), |_| false);
@@ -140,40 +140,40 @@ impl<T: Target> Dispatcher<'_, T> {
     }
 
     /// Checks whether a wait of a client is over: returns the reply if it has come or the time limit has passed.
-    pub(super) fn look(&mut self, waiting: &mut Waiting, time: Instant) -> Option<Reply> {
+    pub(super) fn look(&mut self, waiting: &mut WaitingClient, time: Instant) -> Option<Reply> {
         while let Some(line) = self.read() {
-            match (&mut waiting.wanted, line) {
-                (Wanted::Answer, LinkLine::Reply(line)) => return Some(Reply::text(0, &line)),
-                (Wanted::Line, LinkLine::Reply(line)) => {
+            match (&mut waiting.reply, line) {
+                (AwaitedReply::Answer, LinkLine::Reply(line)) => return Some(Reply::text(0, &line)),
+                (AwaitedReply::Line, LinkLine::Reply(line)) => {
                     return Some(Reply::text(0, &[&line[..], b"\r\n"].concat()));
                 }
-                (Wanted::Ready { after_error }, LinkLine::Reply(line) | LinkLine::Console(line)) => {
+                (AwaitedReply::Ready { after_error }, LinkLine::Reply(line) | LinkLine::Console(line)) => {
                     let is_ready = line == b"Ready";
                     *after_error |= line.to_ascii_lowercase().windows(5).any(|part| part == b"error");
                     let length = Duration::from_millis(READY_WITHIN.into());
-                    (waiting.until, waiting.left) = (time + length, self.ticks(length));
+                    (waiting.deadline, waiting.left) = (time + length, self.ticks(length));
                     let result = if *after_error { Readiness::ReadyAfterError } else { Readiness::Ready };
                     self.show(line);
                     if is_ready {
                         return Some(Reply::number(result as i32));
                     }
                 }
-                (Wanted::Answer | Wanted::Line, LinkLine::Console(line)) => self.show(line),
+                (AwaitedReply::Answer | AwaitedReply::Line, LinkLine::Console(line)) => self.show(line),
             }
         }
         if !self.has_passed(waiting, time) {
             return None;
         }
-        Some(match waiting.wanted {
-            Wanted::Answer => {
+        Some(match waiting.reply {
+            AwaitedReply::Answer => {
                 self.board.log(&format!("client {}: the board has not answered", waiting.client));
                 Reply::text(1, b"")
             }
-            Wanted::Line => Reply::text(TIMEOUT, b""),
-            Wanted::Ready { .. } if self.board.link.has_partial_line() => {
+            AwaitedReply::Line => Reply::text(TIMEOUT, b""),
+            AwaitedReply::Ready { .. } if self.board.link.has_partial_line() => {
                 Reply::number(Readiness::Partial as i32)
             }
-            Wanted::Ready { .. } => Reply::number(Readiness::NoData as i32),
+            AwaitedReply::Ready { .. } => Reply::number(Readiness::NoData as i32),
         })
     }
 }

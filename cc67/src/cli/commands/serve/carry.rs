@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use std::time::Duration;
 
-use super::desk::Note;
+use super::desk::DispatcherMessage;
 use super::wire::WireClient;
 
 /// The number of bytes on their way to the board from which the client has to wait.
@@ -19,18 +19,22 @@ const PAUSE: Duration = Duration::from_millis(1);
 #[derive(Debug)]
 pub(super) struct PluggedClient {
     number: u64,
-    desk: Sender<Note>,
+    desk: Sender<DispatcherMessage>,
     untaken: Arc<AtomicUsize>,
 }
 
 /// Informs the dispatcher of a new client of the link.
-pub(super) fn plug(number: u64, desk: &Sender<Note>, writer: impl Write + Send + 'static) -> PluggedClient {
+pub(super) fn plug(
+    number: u64,
+    desk: &Sender<DispatcherMessage>,
+    writer: impl Write + Send + 'static,
+) -> PluggedClient {
     let (outgoing, inbox) = channel();
     let (unread, untaken) = (Arc::<AtomicUsize>::default(), Arc::<AtomicUsize>::default());
     let client = WireClient { number, outgoing, unread: Arc::clone(&unread), untaken: Arc::clone(&untaken) };
     thread::spawn(move || send(writer, &inbox, &unread));
     // If the dispatcher has ended, sending fails below, too.
-    let _ = desk.send(Note::Plugged(client));
+    let _ = desk.send(DispatcherMessage::Plugged(client));
     PluggedClient { number, desk: desk.clone(), untaken }
 }
 
@@ -50,7 +54,7 @@ impl PluggedClient {
             };
             self.untaken.fetch_add(count, Ordering::Relaxed);
             let bytes = buffer.get(..count).unwrap_or_default().to_vec();
-            if self.desk.send(Note::Bytes(self.number, bytes)).is_err() {
+            if self.desk.send(DispatcherMessage::Bytes(self.number, bytes)).is_err() {
                 break;
             }
         }
@@ -60,7 +64,7 @@ impl PluggedClient {
 impl Drop for PluggedClient {
     fn drop(&mut self) {
         // An error means that the dispatcher has already ended.
-        let _ = self.desk.send(Note::Unplugged(self.number));
+        let _ = self.desk.send(DispatcherMessage::Unplugged(self.number));
     }
 }
 

@@ -14,7 +14,7 @@ use cc67_host::session::EXCHANGE;
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
 
-use super::Terms;
+use super::ServeTerms;
 use super::board::ServedBoard;
 use super::calls::SILENT;
 use super::message::{self, Reply, Request};
@@ -45,15 +45,15 @@ const LINES_AT_ONCE: usize = 10;
 
 /// A message to the dispatcher.
 #[derive(Debug)]
-pub(super) enum Note {
+pub(super) enum DispatcherMessage {
     /// A client has connected; its answers go to this sender.
-    Came(u64, Sender<Vec<Vec<u8>>>),
+    Connected(u64, Sender<Vec<Vec<u8>>>),
     /// A request of a client.
-    Asked(u64, Request),
+    Request(u64, Request),
     /// A message of a client that is not a request: its bytes.
     Unknown(u64, Vec<u8>),
     /// A client has disconnected.
-    Left(u64),
+    Disconnected(u64),
     /// A client of the board's link has connected.
     Plugged(WireClient),
     /// Bytes of that client.
@@ -67,14 +67,14 @@ pub(super) enum Note {
 /// The control flow after a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
-enum Course {
+enum DispatchFlow {
     Continue,
     Leave,
 }
 
 /// The reply for which a client waits.
 #[derive(Clone, Debug)]
-pub(super) enum Wanted {
+pub(super) enum AwaitedReply {
     /// A line of a reply, without its end.
     Answer,
     /// A line of a reply, with its end.
@@ -85,11 +85,11 @@ pub(super) enum Wanted {
 
 /// A client that waits for the board.
 #[derive(Clone, Debug)]
-pub(super) struct Waiting {
+pub(super) struct WaitingClient {
     pub(super) client: u64,
-    pub(super) wanted: Wanted,
+    pub(super) reply: AwaitedReply,
     /// The time limit of the wait.
-    pub(super) until: Instant,
+    pub(super) deadline: Instant,
     /// Without a clock: the number of ticks that the board still runs for it.
     pub(super) left: u64,
 }
@@ -134,12 +134,12 @@ pub(super) struct BoardSlot {
 pub(super) struct Dispatcher<'a, T: Target> {
     pub(super) board: ServedBoard<'a, T>,
     pub(super) slot: BoardSlot,
-    terms: &'a Terms<'a>,
+    terms: &'a ServeTerms<'a>,
     /// The clock and its speed, if the board follows one.
     clock: Option<(Pace, f64)>,
     inbox: Inbox,
     clients: BTreeMap<u64, Sender<Vec<Vec<u8>>>>,
-    waiting: Vec<Waiting>,
+    waiting: Vec<WaitingClient>,
     pub(super) token: Token,
     pub(super) console: ConsoleClient,
     pub(super) state: LinkState,
@@ -151,9 +151,9 @@ pub(super) struct Dispatcher<'a, T: Target> {
 /// Messages to the dispatcher.
 #[derive(Debug)]
 struct Inbox {
-    incoming: Receiver<Note>,
+    incoming: Receiver<DispatcherMessage>,
     /// The messages that have arrived and are still to be handled.
-    notes: VecDeque<Note>,
+    notes: VecDeque<DispatcherMessage>,
 }
 
 impl Inbox {
@@ -169,7 +169,7 @@ pub(super) struct PageState {
     /// The time at which the clock was stopped.
     stopped: Option<Instant>,
     /// The requests of clients since then.
-    held: Vec<Note>,
+    held: Vec<DispatcherMessage>,
     /// The speed that was last requested, where the inner `None` stands for a stopped clock.
     wished: Option<Option<f64>>,
     /// Script commands, each with the time at which it was typed.
@@ -181,8 +181,8 @@ impl<'a, T: Target> Dispatcher<'a, T> {
     pub(super) fn new(
         board: ServedBoard<'a, T>,
         slot: BoardSlot,
-        terms: &'a Terms<'a>,
-        inbox: Receiver<Note>,
+        terms: &'a ServeTerms<'a>,
+        inbox: Receiver<DispatcherMessage>,
     ) -> Self {
         let clock = terms.pace.map(|speed| (Pace::with_speed(board.tick(), speed), speed));
         Self {
@@ -207,7 +207,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         self.look_at_page();
         while self.board.tick().get() < limit {
             if let Some(note) = self.next_note()
-                && self.take(note) == Course::Leave
+                && self.take(note) == DispatchFlow::Leave
             {
                 break;
             }
@@ -222,11 +222,11 @@ impl<'a, T: Target> Dispatcher<'a, T> {
     }
 
     /// Takes the next message; `None` if it is time to run the board.
-    fn next_note(&mut self) -> Option<Note> {
+    fn next_note(&mut self) -> Option<DispatcherMessage> {
         if let Some(note) = self.inbox.notes.pop_front() {
             return Some(note);
         }
-        let first = self.waiting.iter().map(|waiting| waiting.until).min();
+        let first = self.waiting.iter().map(|waiting| waiting.deadline).min();
         let patience = match (&self.clock, first) {
             (Some(_), None) if self.board.wire.as_ref().is_some_and(|wire| wire.is_lively(now())) => {
                 SHORT_BEAT
@@ -238,30 +238,32 @@ impl<'a, T: Target> Dispatcher<'a, T> {
             (None, Some(until)) => until.saturating_duration_since(now()),
             (None, None) if self.page.wished.is_some() || self.board.is_attended() => BEAT,
             // Time passes only in exchanges.
-            (None, None) => return Some(self.inbox.incoming.recv().unwrap_or(Note::End)),
+            (None, None) => return Some(self.inbox.incoming.recv().unwrap_or(DispatcherMessage::End)),
         };
         match self.inbox.incoming.recv_timeout(patience) {
             Ok(note) => Some(note),
             Err(RecvTimeoutError::Timeout) => None,
-            Err(RecvTimeoutError::Disconnected) => Some(Note::End),
+            Err(RecvTimeoutError::Disconnected) => Some(DispatcherMessage::End),
         }
     }
 
-    fn take(&mut self, note: Note) -> Course {
+    fn take(&mut self, note: DispatcherMessage) -> DispatchFlow {
         match note {
-            Note::End => return Course::Leave,
-            Note::Came(client, answers) => {
+            DispatcherMessage::End => return DispatchFlow::Leave,
+            DispatcherMessage::Connected(client, answers) => {
                 self.clients.insert(client, answers);
             }
-            Note::Unknown(client, message) => {
+            DispatcherMessage::Unknown(client, message) => {
                 let text = format!("client {client}: {}, its connection is closed", unknown(&message));
                 terminal::note(&text);
                 self.board.log(&text);
             }
-            Note::Left(client) => return self.left(client),
-            Note::Plugged(_) | Note::Bytes(..) | Note::Unplugged(_) => return self.wire(note),
-            Note::Asked(..) if self.page.stopped.is_some() => self.page.held.push(note),
-            Note::Asked(client, request) => {
+            DispatcherMessage::Disconnected(client) => return self.left(client),
+            DispatcherMessage::Plugged(_)
+            | DispatcherMessage::Bytes(..)
+            | DispatcherMessage::Unplugged(_) => return self.wire(note),
+            DispatcherMessage::Request(..) if self.page.stopped.is_some() => self.page.held.push(note),
+            DispatcherMessage::Request(client, request) => {
                 self.wait_for_clock();
                 if let Some(reply) = self.ask(client, &request) {
                     self.answer(client, reply);
@@ -271,26 +273,32 @@ impl<'a, T: Target> Dispatcher<'a, T> {
                 }
             }
         }
-        Course::Continue
+        DispatchFlow::Continue
     }
 
     /// Handles a message about the only client of the link.
-    fn wire(&mut self, note: Note) -> Course {
-        let Some(wire) = &mut self.board.wire else { return Course::Continue };
+    fn wire(&mut self, note: DispatcherMessage) -> DispatchFlow {
+        let Some(wire) = &mut self.board.wire else { return DispatchFlow::Continue };
         match note {
-            Note::Plugged(client) => wire.plug(client),
-            Note::Bytes(client, bytes) => wire.take(client, &bytes, now()),
-            Note::Unplugged(client) => wire.unplug(client),
-            Note::Came(..) | Note::Asked(..) | Note::Unknown(..) | Note::Left(_) | Note::End => {}
+            DispatcherMessage::Plugged(client) => wire.plug(client),
+            DispatcherMessage::Bytes(client, bytes) => wire.take(client, &bytes, now()),
+            DispatcherMessage::Unplugged(client) => wire.unplug(client),
+            DispatcherMessage::Connected(..)
+            | DispatcherMessage::Request(..)
+            | DispatcherMessage::Unknown(..)
+            | DispatcherMessage::Disconnected(_)
+            | DispatcherMessage::End => {}
         }
-        if self.terms.once && wire.is_unplugged() { Course::Leave } else { Course::Continue }
+        if self.terms.once && wire.is_unplugged() { DispatchFlow::Leave } else { DispatchFlow::Continue }
     }
 
     /// Handles the end of a client: the token and console are free again if it had them.
-    fn left(&mut self, client: u64) -> Course {
+    fn left(&mut self, client: u64) -> DispatchFlow {
         self.clients.remove(&client);
         self.waiting.retain(|waiting| waiting.client != client);
-        self.page.held.retain(|note| !matches!(note, Note::Asked(other, _) if *other == client));
+        self.page
+            .held
+            .retain(|note| !matches!(note, DispatcherMessage::Request(other, _) if *other == client));
         if self.token.taken_by == Some(client) {
             self.token = Token::default();
         }
@@ -298,7 +306,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
             self.console = ConsoleClient::default();
             self.board.is_heard = false;
         }
-        if self.terms.once && self.clients.is_empty() { Course::Leave } else { Course::Continue }
+        if self.terms.once && self.clients.is_empty() { DispatchFlow::Leave } else { DispatchFlow::Continue }
     }
 
     /// Answers a client; error texts are sent before the reply, and so are console lines if it is the console.
@@ -339,7 +347,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         };
         if let Some(since) = self.page.stopped.take() {
             let stopped = time.saturating_duration_since(since);
-            self.waiting.iter_mut().for_each(|waiting| waiting.until += stopped);
+            self.waiting.iter_mut().for_each(|waiting| waiting.deadline += stopped);
             self.inbox.notes.extend(self.page.held.drain(..));
         }
         self.clock = Some((Pace::with_speed(self.board.tick(), speed), speed));
@@ -443,10 +451,11 @@ impl<'a, T: Target> Dispatcher<'a, T> {
 
     /// Makes a client wait for the board, at most for some milliseconds; returns the reply if it comes within the
     /// duration of an exchange.
-    pub(super) fn wait(&mut self, client: u64, wanted: Wanted, milliseconds: u32) -> Option<Reply> {
+    pub(super) fn wait(&mut self, client: u64, wanted: AwaitedReply, milliseconds: u32) -> Option<Reply> {
         let time = now();
         let length = Duration::from_millis(milliseconds.into());
-        let mut waiting = Waiting { client, wanted, until: time + length, left: self.ticks(length) };
+        let mut waiting =
+            WaitingClient { client, reply: wanted, deadline: time + length, left: self.ticks(length) };
         let end = self.board.tick().get() + EXCHANGE;
         loop {
             let begin = self.board.tick().get();
@@ -469,9 +478,9 @@ impl<'a, T: Target> Dispatcher<'a, T> {
 
     /// Returns whether the time limit of a wait has passed. With a clock, the clock decides; without one, the board's
     /// ticks; for ReadLineTimeOut, both must have passed.
-    pub(super) fn has_passed(&self, waiting: &Waiting, time: Instant) -> bool {
-        let is_timed = self.is_clocked() || matches!(waiting.wanted, Wanted::Line);
-        waiting.left == 0 && (!is_timed || time >= waiting.until)
+    pub(super) fn has_passed(&self, waiting: &WaitingClient, time: Instant) -> bool {
+        let is_timed = self.is_clocked() || matches!(waiting.reply, AwaitedReply::Line);
+        waiting.left == 0 && (!is_timed || time >= waiting.deadline)
     }
 
     /// Returns whether the board follows a clock.

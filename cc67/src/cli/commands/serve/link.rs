@@ -25,7 +25,7 @@ pub(super) enum LinkLine {
 
 /// The unread lines.
 #[derive(Debug, Default)]
-pub(super) struct Unread {
+pub(super) struct UnreadLines {
     /// Each line with its number in the order of arrival.
     replies: VecDeque<(u64, Vec<u8>)>,
     console: VecDeque<(u64, Vec<u8>)>,
@@ -36,7 +36,7 @@ pub(super) struct Unread {
     lost_replies: bool,
 }
 
-impl Unread {
+impl UnreadLines {
     /// Adds a line of a reply.
     pub(super) fn reply(&mut self, line: &[u8]) {
         let mut whole = mem::take(&mut self.partial);
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn lines_are_read_in_their_order() {
-        let mut link = Unread::default();
+        let mut link = UnreadLines::default();
         link.console(b"one".to_vec(), true);
         link.echo(b"Read");
         assert!(link.has_partial_line());
@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn unread_lines_and_replies_are_limited() {
-        let mut link = Unread::default();
+        let mut link = UnreadLines::default();
         for number in 0..UNHEARD_LINES + 10 {
             link.console(number.to_string().into_bytes(), false);
         }

@@ -19,7 +19,7 @@ use cc67_host::seats::{FIRST_WORDS, Seat, Seats};
 
 use super::carry::plug;
 use super::connection::{self, ClientConnection, Received};
-use super::desk::Note;
+use super::desk::DispatcherMessage;
 use super::message::Request;
 use super::pipe;
 use crate::cli::io::pty::Terminal;
@@ -38,9 +38,9 @@ const RAW_PORT: &str = "tcp-raw:";
 
 /// Socket files, which are removed at the end.
 #[derive(Debug, Default)]
-pub(super) struct Places(Vec<PathBuf>);
+pub(super) struct SocketFiles(Vec<PathBuf>);
 
-impl Drop for Places {
+impl Drop for SocketFiles {
     fn drop(&mut self) {
         for path in &self.0 {
             // A file that someone has already removed needs no removal.
@@ -51,11 +51,11 @@ impl Drop for Places {
 
 /// The path of connections to the dispatchers.
 #[derive(Clone, Debug)]
-pub(super) struct Door {
+pub(super) struct ConnectionRouter {
     /// The dispatcher of the first board, which also answers for boards that do not exist.
-    desk: Sender<Note>,
+    dispatcher: Sender<DispatcherMessage>,
     /// The dispatchers of the other boards.
-    others: Arc<[Sender<Note>]>,
+    others: Arc<[Sender<DispatcherMessage>]>,
     /// The number of connections so far.
     numbers: Arc<AtomicU64>,
     /// The seats of the connected clients.
@@ -64,15 +64,19 @@ pub(super) struct Door {
 
 /// Accepts connections at these addresses in the background and passes them to the boards' dispatchers; `option` is the
 /// option with the addresses.
-pub(super) fn listen(addresses: &[String], option: &str, desks: &[Sender<Note>]) -> Result<Places> {
+pub(super) fn listen(
+    addresses: &[String],
+    option: &str,
+    desks: &[Sender<DispatcherMessage>],
+) -> Result<SocketFiles> {
     let (desk, others) = desks.split_first().context("a board is served")?;
-    let door = Door {
-        desk: desk.clone(),
+    let door = ConnectionRouter {
+        dispatcher: desk.clone(),
         others: others.into(),
         numbers: Arc::default(),
         seats: Seats::new(MOST_CLIENTS),
     };
-    let mut places = Places::default();
+    let mut places = SocketFiles::default();
     for address in addresses {
         let complaint = || format!("`{option} {address}`");
         if let Some(port) = address.strip_prefix("tcp:") {
@@ -101,19 +105,19 @@ pub(super) fn is_wire(address: &str) -> bool {
 }
 
 /// Creates a pseudo-terminal that carries the board's own bytes.
-fn carry_on_terminal(door: &Door) -> Result<()> {
+fn carry_on_terminal(door: &ConnectionRouter) -> Result<()> {
     let terminal = Terminal::open()?;
     terminal::note(&format!("a board is served on serial:{}", terminal.name()));
     let writer = terminal.controller()?;
     let door = door.clone();
     in_background(move || {
         let number = door.numbers.fetch_add(1, Ordering::Relaxed) + 1;
-        plug(number, &door.desk, writer).carry(terminal);
+        plug(number, &door.dispatcher, writer).carry(terminal);
     })
 }
 
 /// Accepts connections that carry the board's own bytes, one at a time.
-fn carry_on_port(port: &str, door: &Door) -> Result<()> {
+fn carry_on_port(port: &str, door: &ConnectionRouter) -> Result<()> {
     let listener = bind(port)?;
     terminal::note(&format!("a board is served on tcp:localhost:{}", listener.local_addr()?.port()));
     let (door, link) = (door.clone(), RawLink::default());
@@ -143,25 +147,25 @@ impl RawLink {
     }
 
     /// Passes on the bytes of a client in a separate thread, or rejects it.
-    fn admit(&self, stream: TcpStream, door: &Door) {
+    fn admit(&self, stream: TcpStream, door: &ConnectionRouter) {
         let number = door.numbers.fetch_add(1, Ordering::Relaxed) + 1;
         if let Err(why) = self.carry(number, stream, door) {
             terminal::note(&format!("client {number}: refused, {why}"));
         }
     }
 
-    fn carry(&self, number: u64, stream: TcpStream, door: &Door) -> Result<()> {
+    fn carry(&self, number: u64, stream: TcpStream, door: &ConnectionRouter) -> Result<()> {
         let writer = stream.try_clone()?;
         let (has_spoken, before) = self.take(number, &stream)?;
         // The dispatcher must learn of the new client before the end of the previous one.
-        let plugged = plug(number, &door.desk, writer);
+        let plugged = plug(number, &door.dispatcher, writer);
         if let Some(before) = before {
             // The previous client may already have disconnected.
             let _ = before.shutdown(Shutdown::Both);
         }
         let link = self.clone();
         let spawned = in_background(move || {
-            plugged.carry(FirstWords { stream, has_spoken });
+            plugged.carry(FirstBytes { stream, has_spoken });
             link.leave(number);
         });
         spawned.inspect_err(|_| self.leave(number))
@@ -193,12 +197,12 @@ impl RawLink {
 
 /// The bytes of a client; sets a flag with the first of them.
 #[derive(Debug)]
-struct FirstWords {
+struct FirstBytes {
     stream: TcpStream,
     has_spoken: Arc<AtomicBool>,
 }
 
-impl Read for FirstWords {
+impl Read for FirstBytes {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.stream.read(buffer)?;
         self.has_spoken.fetch_or(count > 0, Ordering::Relaxed);
@@ -211,7 +215,7 @@ fn bind(port: &str) -> Result<TcpListener> {
     TcpListener::bind((Ipv4Addr::LOCALHOST, number)).context("cannot listen there")
 }
 
-fn listen_on_port(port: &str, door: &Door) -> Result<()> {
+fn listen_on_port(port: &str, door: &ConnectionRouter) -> Result<()> {
     let listener = bind(port)?;
     terminal::note(&format!("a board is served on tcp:{}", listener.local_addr()?.port()));
     let door = door.clone();
@@ -234,7 +238,7 @@ fn in_background(work: impl FnOnce() + Send + 'static) -> Result<()> {
 }
 
 #[cfg(unix)]
-fn listen_on_path(address: &str, door: &Door) -> Result<PathBuf> {
+fn listen_on_path(address: &str, door: &ConnectionRouter) -> Result<PathBuf> {
     use std::os::unix::net::{UnixListener, UnixStream};
 
     // A socket left by a killed server serves nobody.
@@ -254,20 +258,20 @@ fn listen_on_path(address: &str, door: &Door) -> Result<PathBuf> {
 }
 
 #[cfg(not(unix))]
-fn listen_on_path(_: &str, _: &Door) -> Result<PathBuf> {
+fn listen_on_path(_: &str, _: &ConnectionRouter) -> Result<PathBuf> {
     bail!("this system has no such sockets; tcp:PORT works everywhere")
 }
 
-impl Door {
+impl ConnectionRouter {
     /// The dispatchers of all boards.
-    fn desks(&self) -> impl Iterator<Item = &Sender<Note>> {
-        iter::once(&self.desk).chain(&*self.others)
+    fn desks(&self) -> impl Iterator<Item = &Sender<DispatcherMessage>> {
+        iter::once(&self.dispatcher).chain(&*self.others)
     }
 
     /// The dispatcher for a request.
-    fn desk(&self, request: &Request) -> &Sender<Note> {
+    fn desk(&self, request: &Request) -> &Sender<DispatcherMessage> {
         let index = request.index(1 + self.others.len()).unwrap_or(0);
-        self.desks().nth(index).unwrap_or(&self.desk)
+        self.desks().nth(index).unwrap_or(&self.dispatcher)
     }
 
     /// Serves a connection in a separate thread; if there are too many, closes the one that has been silent the
@@ -292,7 +296,7 @@ impl Door {
 }
 
 /// Answers requests until the client disconnects, or makes an invalid request.
-fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, door: &Door) {
+fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, door: &ConnectionRouter) {
     connection.limit_wait(Some(FIRST_WORDS));
     let mut received = connection.receive_first();
     connection.limit_wait(None);
@@ -311,16 +315,16 @@ fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, door: 
     let (answers, inbox) = channel();
     for desk in door.desks() {
         // If the dispatcher has ended, there is no answer below.
-        let _ = desk.send(Note::Came(number, answers.clone()));
+        let _ = desk.send(DispatcherMessage::Connected(number, answers.clone()));
     }
     while let Received::Message(bytes) = &received {
         seat.hear();
         let Some(request) = Request::read(bytes) else {
             // An error means that the dispatcher has ended.
-            let _ = door.desk.send(Note::Unknown(number, bytes.clone()));
+            let _ = door.dispatcher.send(DispatcherMessage::Unknown(number, bytes.clone()));
             break;
         };
-        if door.desk(&request).send(Note::Asked(number, request)).is_err() {
+        if door.desk(&request).send(DispatcherMessage::Request(number, request)).is_err() {
             break;
         }
         let Ok(messages) = inbox.recv() else { break };
@@ -331,6 +335,6 @@ fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, door: 
     }
     for desk in door.desks() {
         // An error means that the dispatcher has already ended.
-        let _ = desk.send(Note::Left(number));
+        let _ = desk.send(DispatcherMessage::Disconnected(number));
     }
 }

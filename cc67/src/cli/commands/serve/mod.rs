@@ -58,11 +58,11 @@ use crate::cli::io::{output, terminal};
 use crate::cli::session::{BoardSession, Setup, Work};
 use board::ServedBoard;
 use boards::BoardFile;
-use desk::{BoardSlot, Dispatcher, Note};
+use desk::{BoardSlot, Dispatcher, DispatcherMessage};
 pub(super) use link::{CONSOLE_LINES, UNHEARD_LINES};
 pub(super) use listen::MOST_CLIENTS;
-use listen::Places;
-use served::Served;
+use listen::SocketFiles;
+use served::UsableBoard;
 pub(super) use wire::{LOST_BYTES, UNREAD_BYTES};
 
 /// The default addresses of the vendor's server.
@@ -134,7 +134,7 @@ fn pace(text: &str) -> Result<PaceName, String> {
 
 /// The terms for serving a board.
 #[derive(Debug)]
-pub(super) struct Terms<'a> {
+pub(super) struct ServeTerms<'a> {
     /// The addresses of the listeners, and the option that names them.
     pub(super) addresses: Vec<String>,
     pub(super) option: &'static str,
@@ -163,7 +163,7 @@ pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
         PaceName::Exchanges => None,
     };
     let usual = || USUAL.iter().map(|address| (*address).to_owned()).collect();
-    let terms = Terms {
+    let terms = ServeTerms {
         addresses: if given.is_empty() { usual() } else { given },
         option: "--listen",
         pace,
@@ -189,7 +189,7 @@ pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
     terms.serve(setup, debugger)
 }
 
-impl Terms<'_> {
+impl ServeTerms<'_> {
     /// Returns whether a single client uses the board's link.
     pub(super) fn is_on_wire(&self) -> bool {
         self.addresses.iter().any(|address| listen::is_wire(address))
@@ -220,26 +220,26 @@ impl Terms<'_> {
 
     fn serve_one(&self, setup: Setup, debugger: Option<AttachPoint>) -> Result<Exit> {
         let (notes, inbox) = channel();
-        let opening = Opening::new(self, vec![notes])?;
+        let opening = ServerStart::new(self, vec![notes])?;
         setup.debugged(debugger, BoardWork { opening: &opening, inbox, index: 0, name: None })
     }
 }
 
 /// The boards of a server before its first client: listeners start when all of them are ready.
-struct Opening<'a> {
-    terms: &'a Terms<'a>,
-    desks: Vec<Sender<Note>>,
+struct ServerStart<'a> {
+    terms: &'a ServeTerms<'a>,
+    dispatchers: Vec<Sender<DispatcherMessage>>,
     /// Set when the server should end, even if a debugger has stopped a board.
     is_ending: Arc<AtomicBool>,
     /// The number of boards that are not ready yet.
     missing: AtomicUsize,
-    places: Mutex<Places>,
+    socket_files: Mutex<SocketFiles>,
 }
 
-impl<'a> Opening<'a> {
+impl<'a> ServerStart<'a> {
     /// Prepares boards with these dispatchers; Ctrl-C and a termination request of the operating system end all of
     /// them.
-    fn new(terms: &'a Terms<'a>, desks: Vec<Sender<Note>>) -> Result<Self> {
+    fn new(terms: &'a ServeTerms<'a>, desks: Vec<Sender<DispatcherMessage>>) -> Result<Self> {
         let is_ending = Arc::<AtomicBool>::default();
         let (is_told, told) = (Arc::clone(&is_ending), desks.clone());
         let end = move || {
@@ -248,7 +248,7 @@ impl<'a> Opening<'a> {
         };
         ctrlc::set_handler(end).context("cannot take Ctrl-C")?;
         let missing = AtomicUsize::new(desks.len());
-        Ok(Self { terms, desks, is_ending, missing, places: Mutex::default() })
+        Ok(Self { terms, dispatchers: desks, is_ending, missing, socket_files: Mutex::default() })
     }
 
     /// Notes that a board is ready; listeners start with the last one.
@@ -256,8 +256,8 @@ impl<'a> Opening<'a> {
         if self.missing.fetch_sub(1, Ordering::Relaxed) > 1 {
             return Ok(());
         }
-        let opened = listen::listen(&self.terms.addresses, self.terms.option, &self.desks)?;
-        if let Ok(mut places) = self.places.lock() {
+        let opened = listen::listen(&self.terms.addresses, self.terms.option, &self.dispatchers)?;
+        if let Ok(mut places) = self.socket_files.lock() {
             *places = opened;
         }
         Ok(())
@@ -265,17 +265,17 @@ impl<'a> Opening<'a> {
 }
 
 /// Ends all dispatchers.
-fn end_all(desks: &[Sender<Note>]) {
+fn end_all(desks: &[Sender<DispatcherMessage>]) {
     for desk in desks {
         // An error means that the dispatcher has already ended.
-        let _ = desk.send(Note::End);
+        let _ = desk.send(DispatcherMessage::End);
     }
 }
 
 /// One of the boards to be served.
 struct BoardWork<'a> {
-    opening: &'a Opening<'a>,
-    inbox: Receiver<Note>,
+    opening: &'a ServerStart<'a>,
+    inbox: Receiver<DispatcherMessage>,
     index: usize,
     /// The board's name, if several are served.
     name: Option<&'a str>,
@@ -286,11 +286,11 @@ impl Work for BoardWork<'_> {
         let Self { opening, inbox, index, name } = self;
         let terms = opening.terms;
         rig.connect()?;
-        let (board, trace) = Served::new(rig, terms, Arc::clone(&opening.is_ending))?;
+        let (board, trace) = UsableBoard::new(rig, terms, Arc::clone(&opening.is_ending))?;
         let board = ServedBoard::new(board, trace, terms)?;
         opening.note_ready()?;
         name.into_iter().for_each(terminal::name_subject);
-        let slot = BoardSlot { index, boards: opening.desks.len() };
+        let slot = BoardSlot { index, boards: opening.dispatchers.len() };
         Dispatcher::new(board, slot, terms, inbox).run()
     }
 }

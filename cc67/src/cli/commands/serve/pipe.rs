@@ -31,7 +31,7 @@ pub(super) use windows::listen;
 
 /// Returns an error: this system has no such pipes.
 #[cfg(not(windows))]
-pub(super) fn listen(path: &str, _: &super::listen::Door) -> Result<()> {
+pub(super) fn listen(path: &str, _: &super::listen::ConnectionRouter) -> Result<()> {
     anyhow::bail!("{path} is a named pipe, which only Windows has; a socket or tcp:PORT works here")
 }
 
@@ -53,7 +53,7 @@ mod windows {
 
     use super::Result;
     use crate::cli::commands::serve::connection::{ClientConnection, LONGEST, Received};
-    use crate::cli::commands::serve::listen::Door;
+    use crate::cli::commands::serve::listen::ConnectionRouter;
     use crate::cli::io::terminal;
 
     /// The size of a pipe's buffers in bytes.
@@ -66,7 +66,7 @@ mod windows {
     const PAUSE: Duration = Duration::from_millis(100);
 
     /// Accepts connections at a pipe in the background.
-    pub(in crate::cli::commands::serve) fn listen(path: &str, door: &Door) -> Result<()> {
+    pub(in crate::cli::commands::serve) fn listen(path: &str, door: &ConnectionRouter) -> Result<()> {
         // Not all systems with named pipes reject a second server.
         let is_served = match OpenOptions::new().read(true).write(true).open(path) {
             Ok(_) => true,

@@ -15,7 +15,7 @@ use runtime::debug::DebugInfo;
 use crate::cli::report::trace::{self, Trace};
 use crate::cli::session::BoardSession;
 
-use super::Terms;
+use super::ServeTerms;
 
 /// The requests of pages to the dispatcher.
 #[derive(Debug, Default)]
@@ -31,19 +31,19 @@ pub(super) struct PageRequests {
 }
 
 /// A board that clients can use.
-pub(super) struct Served<T: Target> {
-    rig: BoardSession<T>,
+pub(super) struct UsableBoard<T: Target> {
+    session: BoardSession<T>,
     /// Set when the server should end, even if a debugger has stopped the board.
     is_ending: Arc<AtomicBool>,
     #[cfg(feature = "live")]
     view: Option<LiveView<T>>,
 }
 
-impl<T: Target> Served<T> {
+impl<T: Target> UsableBoard<T> {
     /// Creates the served board of a session, with a page if the terms require one; returns it with its trace.
     pub(super) fn new(
         mut rig: BoardSession<T>,
-        terms: &Terms<'_>,
+        terms: &ServeTerms<'_>,
         is_ending: Arc<AtomicBool>,
     ) -> Result<(Self, Option<Trace>)> {
         // A page shows signals even if they are not written to a file.
@@ -62,7 +62,7 @@ impl<T: Target> Served<T> {
         #[cfg(feature = "live")]
         let view = terms.page.as_ref().map(|page| page.open(&mut rig.session)).transpose()?;
         let board = Self {
-            rig,
+            session: rig,
             is_ending,
             #[cfg(feature = "live")]
             view,
@@ -71,10 +71,10 @@ impl<T: Target> Served<T> {
     }
 }
 
-impl<T: Target> Served<T> {
+impl<T: Target> UsableBoard<T> {
     /// The number of the last completed tick.
     pub(super) fn tick(&self) -> Ticks {
-        self.rig.session.tick()
+        self.session.session.tick()
     }
 
     /// Runs to the end of a tick.
@@ -82,7 +82,7 @@ impl<T: Target> Served<T> {
         let is_ending = &self.is_ending;
         #[cfg(feature = "live")]
         let view = &mut self.view;
-        self.rig.advance_attended(limit, sink, &mut |_session| {
+        self.session.advance_attended(limit, sink, &mut |_session| {
             #[cfg(feature = "live")]
             if let Some(view) = view {
                 view.show(_session);
@@ -93,7 +93,7 @@ impl<T: Target> Served<T> {
 
     /// Returns whether a debugger is attached, or can attach.
     pub(super) fn is_attended(&self) -> bool {
-        self.rig.attendant.is_some()
+        self.session.attendant.is_some()
     }
 
     /// Serves a debugger while time does not pass.
@@ -105,51 +105,51 @@ impl<T: Target> Served<T> {
 
     /// Sends bytes over the link.
     pub(super) fn receive(&mut self, bytes: &[u8]) {
-        self.rig.session.receive(bytes);
+        self.session.session.receive(bytes);
     }
 
     /// From now on keeps the bytes sent by the board, for the only client of its link.
     pub(super) fn tap_wire(&mut self) {
-        self.rig.session.tap_wire();
+        self.session.session.tap_wire();
     }
 
     /// Returns the bytes that it has sent since the last call.
     pub(super) fn take_wire(&mut self) -> Vec<u8> {
-        self.rig.session.take_wire()
+        self.session.session.take_wire()
     }
 
     /// Returns whether the board still has to take bytes.
     pub(super) fn is_receiving(&self) -> bool {
-        self.rig.session.target().is_receiving()
+        self.session.session.target().is_receiving()
     }
 
     /// Returns whether a command waits for data lines.
     pub(super) fn is_in_command(&self) -> bool {
-        self.rig.session.target().is_in_command()
+        self.session.session.target().is_in_command()
     }
 
     /// Sets whether somebody takes console lines; if not, programs that print have to wait.
     pub(super) fn listen(&mut self, listens: bool) {
-        self.rig.session.listen(listens);
+        self.session.session.listen(listens);
     }
 
     /// Returns the debug information of its programs.
     pub(super) fn programs(&self) -> Vec<DebugInfo> {
-        self.rig.session.debug().into_iter().map(|(_, debug)| debug).collect()
+        self.session.session.debug().into_iter().map(|(_, debug)| debug).collect()
     }
 
     /// Ends serving it.
     pub(super) fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()> {
         #[cfg(feature = "live")]
         self.view.iter().for_each(LiveView::close);
-        self.rig.finish(sink)
+        self.session.finish(sink)
     }
 
     /// Shows an event.
     #[cfg(feature = "live")]
     pub(super) fn show(&mut self, event: &Event) {
         if let Some(view) = &mut self.view {
-            view.hear(&self.rig.session, event);
+            view.hear(&self.session.session, event);
         }
     }
 
@@ -157,7 +157,7 @@ impl<T: Target> Served<T> {
     /// page.
     #[cfg(feature = "live")]
     pub(super) fn beat(&mut self) -> Option<PageRequests> {
-        let wishes = self.view.as_mut()?.beat(&mut self.rig.session);
+        let wishes = self.view.as_mut()?.beat(&mut self.session.session);
         let cc67_live::OwnerRequests { events, commands, acts, speed } = wishes;
         Some(PageRequests { events, commands, acts, speed })
     }

@@ -16,7 +16,7 @@ use clap::Args;
 use super::case::Case;
 use super::this_command;
 use super::verdict::Verdict;
-use crate::cli::commands::run::schedules::Failing;
+use crate::cli::commands::run::schedules::ScheduleFailure;
 
 /// Options for schedules.
 #[derive(Debug, Args)]
@@ -78,9 +78,9 @@ struct ScheduleSearch<'a> {
 
 impl ScheduleSearch<'_> {
     /// The lowest seed that fails.
-    fn first(&self, seeds: Range<u64>, jobs: usize) -> Result<Option<Failing>> {
+    fn first(&self, seeds: Range<u64>, jobs: usize) -> Result<Option<ScheduleFailure>> {
         let next = AtomicU64::new(seeds.start);
-        let found: Mutex<Vec<Failing>> = Mutex::default();
+        let found: Mutex<Vec<ScheduleFailure>> = Mutex::default();
         let work = || -> Result<()> {
             loop {
                 let from = next.fetch_add(CHUNK, Ordering::Relaxed);
@@ -107,8 +107,9 @@ impl ScheduleSearch<'_> {
     }
 
     /// Finds the smallest schedule that fails, by removing parts as long as the rest still fails.
-    fn smallest(&self, found: Failing) -> Result<FailingSchedule> {
-        let parse = |failing: &Failing| failing.schedule.parse::<Schedule>().map_err(anyhow::Error::msg);
+    fn smallest(&self, found: ScheduleFailure) -> Result<FailingSchedule> {
+        let parse =
+            |failing: &ScheduleFailure| failing.schedule.parse::<Schedule>().map_err(anyhow::Error::msg);
         let seed = found.number;
         let mut smallest = found;
         loop {
@@ -128,7 +129,7 @@ impl ScheduleSearch<'_> {
     }
 
     /// Returns the failing schedules of a list.
-    fn failing(&self, list: &str) -> Result<Vec<Failing>> {
+    fn failing(&self, list: &str) -> Result<Vec<ScheduleFailure>> {
         let golden = self.case.golden();
         let golden = golden.canonicalize().with_context(|| format!("cannot read {}", golden.display()))?;
         let output = self.run(["--explore".into(), list.into(), "--golden".into(), golden.into()])?;

@@ -28,7 +28,7 @@ pub(super) fn register() {
 /// A PNG picture with letters at the positions that the font specifies, including fractions of a pixel.
 pub(super) struct Pixels<'a>(pub(super) BitMapBackend<'a>);
 
-type Drawn<'a> = Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
+type DrawResult<'a> = Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
 
 impl<'a> DrawingBackend for Pixels<'a> {
     type ErrorType = <BitMapBackend<'a> as DrawingBackend>::ErrorType;
@@ -37,19 +37,24 @@ impl<'a> DrawingBackend for Pixels<'a> {
         self.0.get_size()
     }
 
-    fn ensure_prepared(&mut self) -> Drawn<'a> {
+    fn ensure_prepared(&mut self) -> DrawResult<'a> {
         self.0.ensure_prepared()
     }
 
-    fn present(&mut self) -> Drawn<'a> {
+    fn present(&mut self) -> DrawResult<'a> {
         self.0.present()
     }
 
-    fn draw_pixel(&mut self, at: BackendCoord, color: BackendColor) -> Drawn<'a> {
+    fn draw_pixel(&mut self, at: BackendCoord, color: BackendColor) -> DrawResult<'a> {
         self.0.draw_pixel(at, color)
     }
 
-    fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Drawn<'a> {
+    fn draw_line<S: BackendStyle>(
+        &mut self,
+        from: BackendCoord,
+        to: BackendCoord,
+        style: &S,
+    ) -> DrawResult<'a> {
         self.0.draw_line(from, to, style)
     }
 
@@ -59,11 +64,11 @@ impl<'a> DrawingBackend for Pixels<'a> {
         to: BackendCoord,
         style: &S,
         fill: bool,
-    ) -> Drawn<'a> {
+    ) -> DrawResult<'a> {
         self.0.draw_rect(from, to, style, fill)
     }
 
-    fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, at: BackendCoord) -> Drawn<'a> {
+    fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, at: BackendCoord) -> DrawResult<'a> {
         let size = style.size() as f32;
         let (width, height) = (width(text, size), size / 1.24);
         let left = match style.anchor().h_pos {
@@ -87,7 +92,13 @@ const BASELINE: f32 = 0.75;
 
 impl<'a> Pixels<'a> {
     /// Draws letters one after another, beginning at a position on the baseline.
-    fn letters(&mut self, text: &str, size: f32, (left, foot): (f32, f32), color: BackendColor) -> Drawn<'a> {
+    fn letters(
+        &mut self,
+        text: &str,
+        size: f32,
+        (left, foot): (f32, f32),
+        color: BackendColor,
+    ) -> DrawResult<'a> {
         for (letter, along) in places(text, size) {
             let glyph = letter.with_scale_and_position(PxScale::from(size), point(left + along, foot));
             let Some(outline) = FONT.outline_glyph(glyph) else { continue };

@@ -7,7 +7,7 @@ mod flame;
 mod sampled;
 mod table;
 
-pub(crate) use sampled::Sampled;
+pub(crate) use sampled::SampledBoard;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -18,7 +18,7 @@ use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 use runtime::Board;
 use vm::engine::ContextId;
-use vm::profile::{ProfilingEngine, Site, Spent, segment};
+use vm::profile::{ProfilingEngine, Site, SpentTime, segment};
 
 use crate::cli::io::output;
 
@@ -58,7 +58,7 @@ fn finish(account: &Account, end: Cycles, target: &ProfileOutput) -> Result<Stri
 
 /// The consumer of processor time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Whose {
+enum TimeConsumer {
     /// A thread or the call-back.
     Program(ContextId),
     /// The firmware's own thread.
@@ -78,7 +78,7 @@ struct ProfileFrame {
 /// A position in the source with the functions that led to it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct ProfilePlace {
-    whose: Whose,
+    whose: TimeConsumer,
     /// The calls, the outermost function first.
     frames: Vec<ProfileFrame>,
     /// The firmware function in which the time was spent.
@@ -86,7 +86,7 @@ struct ProfilePlace {
 }
 
 /// The time spent at each position.
-type Account = BTreeMap<ProfilePlace, Spent>;
+type Account = BTreeMap<ProfilePlace, SpentTime>;
 
 /// Converts addresses to positions; a segment is converted to its lines.
 fn collect(board: &Board<ProfilingEngine>) -> Account {
@@ -98,7 +98,7 @@ fn collect(board: &Board<ProfilingEngine>) -> Account {
             let mut frames = outer.clone();
             frames.extend(self::frames(board, at));
             let place = {
-                let whose = Whose::Program(site.context);
+                let whose = TimeConsumer::Program(site.context);
                 ProfilePlace { whose, frames, firmware: site.firmware.map(firmware_name) }
             };
             let entry = account.entry(place).or_default();
@@ -112,7 +112,7 @@ fn collect(board: &Board<ProfilingEngine>) -> Account {
         let outer = calls.iter().rev().flat_map(|call| frames(board, *call));
         let frames = outer.chain(frames(board, spender.at)).collect();
         let place = {
-            let whose = Whose::Program(spender.context);
+            let whose = TimeConsumer::Program(spender.context);
             ProfilePlace { whose, frames, firmware: spender.firmware.map(firmware_name) }
         };
         let entry = account.entry(place).or_default();
@@ -127,8 +127,8 @@ fn parts(
     board: &Board<ProfilingEngine>,
     site: &Site,
     head: CodeAddr,
-    spent: Spent,
-) -> Vec<(CodeAddr, Spent)> {
+    spent: SpentTime,
+) -> Vec<(CodeAddr, SpentTime)> {
     let Some(program) = program_of(board, head) else { return vec![(head, spent)] };
     let costs: Vec<(CodeAddr, u32)> = segment(program, head).collect();
     let call = costs.iter().rev().find(|(at, _)| {
@@ -148,7 +148,7 @@ fn parts(
         .iter()
         .map(|(at, cost)| {
             let computing = Cycles::new(times * i64::from(*cost));
-            (*at, Spent { computing, ..Spent::default() })
+            (*at, SpentTime { computing, ..SpentTime::default() })
         })
         .collect();
     if let Some((_, first)) = parts.first_mut() {
@@ -184,7 +184,7 @@ fn firmware_name(address: GuestAddr) -> String {
     known.map_or_else(|| address.to_string(), |function| function.name.to_owned())
 }
 
-impl fmt::Display for Whose {
+impl fmt::Display for TimeConsumer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Program(context) => match context.thread() {

@@ -11,16 +11,16 @@ use kmotiondef::{CodeAddr, ThreadId};
 use runtime::debug::DebugInfo;
 use vm::engine::ContextId;
 
-use super::{Account, ProfileFrame, ProfileOutput, ProfilePlace, Whose, finish};
+use super::{Account, ProfileFrame, ProfileOutput, ProfilePlace, TimeConsumer, finish};
 
 /// The sampled board: the programs, and the firmware.
-pub(crate) struct Sampled<'a> {
+pub(crate) struct SampledBoard<'a> {
     target: &'a BootedTarget,
     /// Debug information of the programs in the threads.
     known: Vec<DebugInfo>,
 }
 
-impl<'a> Sampled<'a> {
+impl<'a> SampledBoard<'a> {
     /// The samples of a session.
     pub(crate) fn of(session: &'a Session<BootedTarget>) -> Self {
         let known = session.programs().iter().map(UserProgram::debug_info).collect();
@@ -41,10 +41,10 @@ impl<'a> Sampled<'a> {
         let source = address.and_then(|address| self.known.iter().find_map(|names| names.place(address)));
         let thread = state.thread.and_then(|thread| i32::try_from(thread).ok()).and_then(ThreadId::new);
         let whose = match (state.is_masked, &source, thread) {
-            (true, Some(_), _) => Whose::Program(ContextId::CALLBACK),
-            (true, None, _) => Whose::Interrupt,
-            (false, _, Some(thread)) => Whose::Program(ContextId::of(thread)),
-            (false, _, None) => Whose::Firmware,
+            (true, Some(_), _) => TimeConsumer::Program(ContextId::CALLBACK),
+            (true, None, _) => TimeConsumer::Interrupt,
+            (false, _, Some(thread)) => TimeConsumer::Program(ContextId::of(thread)),
+            (false, _, None) => TimeConsumer::Firmware,
         };
         let frame = source.as_ref().map(|place| ProfileFrame {
             function: place.function.to_owned(),

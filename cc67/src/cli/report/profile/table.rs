@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use kmotiondef::Cycles;
-use vm::profile::Spent;
+use vm::profile::SpentTime;
 
-use super::{Account, ProfilePlace, Whose};
+use super::{Account, ProfilePlace, TimeConsumer};
 
 /// The number of rows in a table; the others took less time.
 const ROWS: usize = 15;
@@ -14,14 +14,14 @@ const ROWS: usize = 15;
 /// The time of a function itself, and including the functions that it called.
 #[derive(Clone, Copy, Default)]
 struct FunctionTimes {
-    own: Spent,
-    total: Spent,
+    own: SpentTime,
+    total: SpentTime,
 }
 
 /// The tables of all threads.
 pub(super) fn table(account: &Account, end: Cycles) -> String {
     let mut text = format!("Where {} of board time went\n", time(end));
-    let all: BTreeSet<Whose> = account.keys().map(|place| place.whose).collect();
+    let all: BTreeSet<TimeConsumer> = account.keys().map(|place| place.whose).collect();
     for whose in all {
         let places: Vec<_> = account.iter().filter(|(place, _)| place.whose == whose).collect();
         of_one(&mut text, whose, &places, end);
@@ -29,8 +29,8 @@ pub(super) fn table(account: &Account, end: Cycles) -> String {
     text
 }
 
-fn of_one(text: &mut String, whose: Whose, places: &[(&ProfilePlace, &Spent)], end: Cycles) {
-    let all = places.iter().fold(Spent::default(), |sum, (_, spent)| plus(sum, **spent));
+fn of_one(text: &mut String, whose: TimeConsumer, places: &[(&ProfilePlace, &SpentTime)], end: Cycles) {
+    let all = places.iter().fold(SpentTime::default(), |sum, (_, spent)| plus(sum, **spent));
     let _ = writeln!(
         text,
         "\n{}: computing {} ({}), waiting {} ({}), the rest went to the servo and to others",
@@ -59,7 +59,7 @@ fn of_one(text: &mut String, whose: Whose, places: &[(&ProfilePlace, &Spent)], e
 }
 
 /// The functions of the program and of the firmware, the longest first.
-fn functions(places: &[(&ProfilePlace, &Spent)]) -> Vec<(String, FunctionTimes)> {
+fn functions(places: &[(&ProfilePlace, &SpentTime)]) -> Vec<(String, FunctionTimes)> {
     let mut functions: BTreeMap<String, FunctionTimes> = BTreeMap::new();
     for (place, spent) in places {
         let mut names: Vec<String> = place.frames.iter().map(|frame| frame.function.clone()).collect();
@@ -78,8 +78,8 @@ fn functions(places: &[(&ProfilePlace, &Spent)]) -> Vec<(String, FunctionTimes)>
 }
 
 /// The lines, including the time of firmware functions called from them.
-fn lines(places: &[(&ProfilePlace, &Spent)]) -> Vec<(String, Spent)> {
-    let mut lines: BTreeMap<String, Spent> = BTreeMap::new();
+fn lines(places: &[(&ProfilePlace, &SpentTime)]) -> Vec<(String, SpentTime)> {
+    let mut lines: BTreeMap<String, SpentTime> = BTreeMap::new();
     for (place, spent) in places {
         let Some(frame) = place.frames.last() else { continue };
         let name = match frame.line {
@@ -92,14 +92,14 @@ fn lines(places: &[(&ProfilePlace, &Spent)]) -> Vec<(String, Spent)> {
     longest_first(lines, |spent| *spent)
 }
 
-fn longest_first<T>(rows: BTreeMap<String, T>, spent: impl Fn(&T) -> Spent) -> Vec<(String, T)> {
+fn longest_first<T>(rows: BTreeMap<String, T>, spent: impl Fn(&T) -> SpentTime) -> Vec<(String, T)> {
     let mut rows: Vec<_> = rows.into_iter().collect();
     rows.sort_by_key(|(_, row)| std::cmp::Reverse((spent(row).computing + spent(row).waiting).get()));
     rows
 }
 
-fn plus(a: Spent, b: Spent) -> Spent {
-    Spent { computing: a.computing + b.computing, waiting: a.waiting + b.waiting }
+fn plus(a: SpentTime, b: SpentTime) -> SpentTime {
+    SpentTime { computing: a.computing + b.computing, waiting: a.waiting + b.waiting }
 }
 
 /// A time in a unit that suits its size.

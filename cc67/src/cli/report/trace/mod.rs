@@ -24,7 +24,7 @@ use anyhow::{Result, anyhow, bail};
 use cc67_host::{Capability, Session, Target, WatchError};
 use kmotiondef::{Axes, Bit, CodeAddr, Cycles, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
-use runtime::standing::StandingAxis;
+use runtime::standing::UsedAxis;
 use runtime::trace::{Item, Packets, Quantity, Record, TraceRequest};
 use runtime::{Event, EventKind, Remark};
 
@@ -242,9 +242,9 @@ impl Trace {
         self.know_axes(session.target().standing_axes());
     }
 
-    fn know_axes(&mut self, axes: Vec<StandingAxis>) {
-        let plotted = |axis: StandingAxis| {
-            let StandingAxis { axis, name, units, is_measured, .. } = axis;
+    fn know_axes(&mut self, axes: Vec<UsedAxis>) {
+        let plotted = |axis: UsedAxis| {
+            let UsedAxis { axis, name, units, is_measured, .. } = axis;
             (axis.index(), PlottedAxis { name, units, is_measured })
         };
         self.axes.extend(axes.into_iter().map(plotted));

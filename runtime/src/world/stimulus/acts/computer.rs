@@ -8,7 +8,7 @@ use kmotiondef::variables::PERSIST;
 
 use crate::out::{Message, Request};
 use crate::pc::Answers;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use crate::world::stimulus::reader::StatementReader;
 use crate::world::stimulus::scene::Scene;
 use crate::world::stimulus::tokens::Mistake;

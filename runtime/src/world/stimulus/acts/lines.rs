@@ -9,7 +9,7 @@ use vm::memory::GuestMemory;
 use crate::io::bits::bit_state;
 use crate::io::kanalog::{COUNTS_PER_VOLT, is_volts};
 use crate::out::Message;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use crate::world::WorldAccess;
 use crate::world::stimulus::reader::{StatementReader, number};
 use crate::world::stimulus::scene::Scene;

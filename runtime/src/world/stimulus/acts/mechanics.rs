@@ -5,9 +5,9 @@ use kmotiondef::{AxisId, Cycles};
 use vm::memory::GuestMemory;
 
 use crate::machine::COUNTS_PER_TICK;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use crate::world::WorldAccess;
-use crate::world::stimulus::plans::Moved;
+use crate::world::stimulus::plans::MovingObject;
 use crate::world::stimulus::reader::StatementReader;
 use crate::world::stimulus::scene::Scene;
 use crate::world::stimulus::tokens::Mistake;
@@ -28,7 +28,7 @@ pub(crate) fn push(scene: &mut Scene<'_, '_, '_>, axis: AxisId, units: f64) {
         return scene.access.machine.loads.push(axis, units);
     }
     let over = Cycles::new((ticks as i64).saturating_mul(Cycles::PER_TICK.get()));
-    scene.plans.begin_turn(Moved::Load(axis), units, over, scene.context.now);
+    scene.plans.begin_turn(MovingObject::Load(axis), units, over, scene.context.now);
 }
 
 pub(crate) fn read_pull(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64), Mistake> {
@@ -73,7 +73,7 @@ fn encoder(reader: &mut StatementReader<'_>) -> Result<usize, Mistake> {
 }
 
 pub(crate) fn turn(scene: &mut Scene<'_, '_, '_>, input: usize, counts: f64, over: Cycles) {
-    scene.plans.begin_turn(Moved::Encoder(input), counts, over, scene.context.now);
+    scene.plans.begin_turn(MovingObject::Encoder(input), counts, over, scene.context.now);
 }
 
 /// Declares the encoder as present from the beginning.

@@ -6,7 +6,7 @@ use vm::memory::GuestMemory;
 use crate::io::konnect::{KonnectBoard, Port};
 use crate::io::snapamp::{Quantity, Side};
 use crate::machine::connect_snapamp;
-use crate::views::Typed;
+use crate::views::TypedAccess;
 use crate::world::WorldAccess;
 use crate::world::attached::DeviceSpec;
 use crate::world::stimulus::reader::StatementReader;

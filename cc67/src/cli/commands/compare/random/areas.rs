@@ -11,7 +11,7 @@ mod threads;
 use clap::ValueEnum;
 
 use super::draw::Draw;
-use super::scenario::{Observed, Part, PartKind, Scenario};
+use super::scenario::{Part, PartKind, RecordTimes, Scenario};
 
 /// A part of the board's behaviour in which scenarios are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -79,7 +79,7 @@ impl ScenarioWriter {
             name: format!("{area} {seed}"),
             parts: Vec::new(),
             slices: 0,
-            observed: Observed::Printed,
+            observed: RecordTimes::Printed,
             columns: Vec::new(),
         };
         Self { draw: Draw::new(area, seed), scenario, slice: 0 }
@@ -111,21 +111,21 @@ impl ScenarioWriter {
     /// Ends the program some slices after its last statement; it records the columns in about 60 slices.
     fn observe_slices(&mut self, more: u32, columns: impl IntoIterator<Item = String>) {
         self.scenario.slices = self.slice + more;
-        self.scenario.observed = Observed::Slices((self.scenario.slices / 60).max(1));
+        self.scenario.observed = RecordTimes::Slices((self.scenario.slices / 60).max(1));
         self.scenario.columns = columns.into_iter().collect();
     }
 
     /// Ends the program some slices after its last statement; it records the columns in every tick.
     fn observe_ticks(&mut self, more: u32, columns: impl IntoIterator<Item = String>) {
         self.scenario.slices = self.slice + more;
-        self.scenario.observed = Observed::Ticks;
+        self.scenario.observed = RecordTimes::Ticks;
         self.scenario.columns = columns.into_iter().collect();
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::observation::Subject;
+    use super::super::observation::ScenarioBoard;
     use super::*;
 
     #[test]
@@ -133,7 +133,7 @@ mod tests {
         for area in Area::ALL {
             for seed in 0..4 {
                 let scenario = area.scenario(seed);
-                let played = Subject::Model.play(&scenario);
+                let played = ScenarioBoard::Model.play(&scenario);
                 let observation = played.unwrap_or_else(|error| panic!("{}: {error}", scenario.name));
                 assert!(observation.difference(&observation, &scenario).is_none());
                 assert_eq!(observation.rows.len(), scenario.samples(), "{}", scenario.name);

@@ -49,12 +49,12 @@ pub(super) struct Difference {
 
 /// A board on which scenarios are played.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Subject<'f> {
+pub(super) enum ScenarioBoard<'f> {
     Model,
     Firmware(&'f BootedFirmware),
 }
 
-impl Subject<'_> {
+impl ScenarioBoard<'_> {
     /// Plays a scenario on this board, from power-up.
     pub(super) fn play(self, scenario: &Scenario) -> Result<Observation, HostError> {
         let mut setup = Setup::default();

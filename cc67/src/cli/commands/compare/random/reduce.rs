@@ -1,7 +1,7 @@
 //! The smallest scenario that still shows a difference.
 
 use super::observation::Difference;
-use super::scenario::{Observed, Part, PartKind, Scenario};
+use super::scenario::{Part, PartKind, RecordTimes, Scenario};
 
 /// The maximum number of scenarios that are tried for one reduction.
 const MOST_TRIALS: usize = 120;
@@ -70,9 +70,9 @@ impl Reduction<'_> {
         }
         let sample = (self.differs)(&self.smallest).and_then(|difference| difference.at);
         let slice = match (self.smallest.observed, sample) {
-            (Observed::Slices(every), Some(sample)) => Some(sample as u32 * every),
-            (Observed::Ticks, Some(sample)) => Some(4 + sample as u32 / 2),
-            (Observed::Printed, _) | (_, None) => None,
+            (RecordTimes::Slices(every), Some(sample)) => Some(sample as u32 * every),
+            (RecordTimes::Ticks, Some(sample)) => Some(4 + sample as u32 / 2),
+            (RecordTimes::Printed, _) | (_, None) => None,
         };
         if let Some(slices) = slice.map(|slice| slice + 2).filter(|slices| *slices < self.smallest.slices) {
             self.accept(Scenario { slices, ..self.smallest.clone() });
@@ -112,7 +112,7 @@ mod tests {
             name: "moves 1".to_owned(),
             parts: (0..).zip(texts).map(part).collect(),
             slices: 100,
-            observed: Observed::Slices(5),
+            observed: RecordTimes::Slices(5),
             columns: Vec::new(),
         }
     }

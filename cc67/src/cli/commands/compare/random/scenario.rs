@@ -28,7 +28,7 @@ pub(super) struct Part {
 
 /// The times at which a program records the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Observed {
+pub(super) enum RecordTimes {
     /// Never; only its output is compared.
     Printed,
     /// In every n-th slice.
@@ -47,7 +47,7 @@ pub(super) struct Scenario {
     pub(super) parts: Vec<Part>,
     /// The number of slices of the programs; 0 for lines sent by the PC.
     pub(super) slices: u32,
-    pub(super) observed: Observed,
+    pub(super) observed: RecordTimes,
     /// C expressions that are recorded.
     pub(super) columns: Vec<String>,
 }
@@ -91,18 +91,18 @@ impl Scenario {
     /// The number of samples in a run.
     pub(super) fn samples(&self) -> usize {
         (match self.observed {
-            Observed::Printed => 0,
-            Observed::Slices(every) => self.slices.div_ceil(every),
+            RecordTimes::Printed => 0,
+            RecordTimes::Slices(every) => self.slices.div_ceil(every),
             // Two ticks per slice, less than the actual number at the end.
-            Observed::Ticks => 2 * self.slices.saturating_sub(FIRST_TICK + 2),
+            RecordTimes::Ticks => 2 * self.slices.saturating_sub(FIRST_TICK + 2),
         }) as usize
     }
 
     /// The number of slices, or of ticks, between two samples.
     pub(super) fn samples_every(&self) -> usize {
         match self.observed {
-            Observed::Printed | Observed::Ticks => 1,
-            Observed::Slices(every) => every as usize,
+            RecordTimes::Printed | RecordTimes::Ticks => 1,
+            RecordTimes::Slices(every) => every as usize,
         }
     }
 
@@ -130,19 +130,19 @@ impl Scenario {
         let start: String = self.at(PartKind::Start).flat_map(|text| [" ", text, "\n"]).collect();
         let slices = self.slices_of(1);
         let count = self.slices;
-        if self.observed == Observed::Printed {
+        if self.observed == RecordTimes::Printed {
             return format!(
                 "{head}int main(){{ int n;\n{start} for(n=0;n<{count};n++){{\n   WaitNextTimeSlice();\n{slices} }}\n persist.UserData[0]=1;\n return 0;\n}}\n"
             );
         }
         let words = SAMPLES as usize + 2 * self.samples() * self.columns.len();
         let (every, sample) = match self.observed {
-            Observed::Slices(every) => {
+            RecordTimes::Slices(every) => {
                 (every, self.columns.iter().map(|column| format!(" r[m++]={column};")).collect())
             }
-            Observed::Ticks | Observed::Printed => (1, String::new()),
+            RecordTimes::Ticks | RecordTimes::Printed => (1, String::new()),
         };
-        let (call_back, set, reset) = if self.observed == Observed::Ticks {
+        let (call_back, set, reset) = if self.observed == RecordTimes::Ticks {
             (self.call_back(), " UserCallBack=cb;\n", format!("   if(n=={FIRST_TICK}){{ cbn=0; }}\n"))
         } else {
             (String::new(), "", String::new())
