@@ -89,12 +89,17 @@ impl Kernel {
         parts.servo.planner = parts.level.behaviour().planner;
         parts.io.kogna = devices(&parts.level);
         parts.pc.downloads.spaces = parts.level.board().programs();
-        Self { signatures, callees: Callees::of(parts.level.board()), parts, scripts: Scripts::default() }
+        Self {
+            signatures,
+            callees: Callees::for_board(parts.level.board()),
+            parts,
+            scripts: Scripts::default(),
+        }
     }
 
     /// The row of the function at an address, if the table has it.
     fn row(&self, address: GuestAddr) -> Option<&'static FirmwareFunction> {
-        match self.callees.at(address)? {
+        match self.callees.callee_at(address)? {
             Callee::Row(number) => Some(&FIRMWARE_FUNCTIONS[number]),
             Callee::Later(_) => None,
         }
@@ -128,7 +133,7 @@ impl Kernel {
         parts.io.kogna = devices(&parts.level);
         parts.pc.restart();
         *scripts = Scripts::default();
-        parts.disturb();
+        parts.note_external_change();
     }
 
     /// Returns whether text, motion, a recording or a request to the PC is still in progress.
@@ -162,7 +167,7 @@ impl Kernel {
         }
         let calls = &mut self.parts.calls.waits;
         match (caller.thread, *polls) {
-            (Some(thread), Some(state)) => calls.look(thread, state, caller),
+            (Some(thread), Some(state)) => calls.record_poll(thread, state, caller),
             // An engine may compute pure functions without calling the firmware.
             (Some(thread), None) if !is_pure => {
                 calls.act(thread, caller.now(), Some(&FIRMWARE_FUNCTIONS[number]));
@@ -170,10 +175,10 @@ impl Kernel {
             (Some(_) | None, _) => {}
         }
         if *drives_axis && let Some(axis) = caller.memory.axes().get(caller.arguments.get(0)) {
-            calls.touch(axis);
+            calls.record_commanded(axis);
         }
         if let Some(assist) = &mut self.parts.world.assist {
-            assist.called(polls.is_some() || *is_pure, caller.now());
+            assist.note_call(polls.is_some() || *is_pure, caller.now());
         }
     }
 
@@ -216,7 +221,8 @@ impl Kernel {
             out.remark_of(context.now, Speaker::Thread(thread), at, message);
         }
         for thread in ThreadId::all().filter(|thread| context.threads.state(*thread).is_active()) {
-            let reads = calls.waits.of(thread).calls.iter().filter(|call| call.polls == PolledState::Bit);
+            let reads =
+                calls.waits.wait_of(thread).calls.iter().filter(|call| call.polls == PolledState::Bit);
             for bit in reads.filter_map(|call| Bit::new(call.argument)) {
                 if let Some(message) = moves_away(machine, io, context.memory, bit) {
                     out.remark_of(context.now, Speaker::Thread(thread), None, message);
@@ -242,7 +248,7 @@ impl Kernel {
     /// Reports levels that were written to pins which are still inputs.
     fn settle_notices(&mut self, now: Cycles) {
         let Parts { out, io, calls, .. } = &mut self.parts;
-        calls.notices.settle(out, now, |bit| io.pins.is_output(bit));
+        calls.notices.report_pending(out, now, |bit| io.pins.is_output(bit));
     }
 
     /// The limit switch of an axis that is watched and active.
@@ -402,14 +408,14 @@ fn pure(row: &FirmwareFunction) -> Option<Pure> {
 
 impl Firmware for Kernel {
     fn signature(&self, address: GuestAddr) -> Option<&Signature> {
-        match self.callees.at(address)? {
+        match self.callees.callee_at(address)? {
             Callee::Row(number) => self.signatures.get(number),
             Callee::Later(number) => self.signatures.get(FIRMWARE_FUNCTIONS.len() + number),
         }
     }
 
     fn call(&mut self, address: GuestAddr, caller: &mut Caller<'_>) -> Result<Outcome<Value>, TrapKind> {
-        let callee = self.callees.at(address);
+        let callee = self.callees.callee_at(address);
         let number = match callee.ok_or(TrapKind::UnknownFirmwareFunction { addr: address })? {
             Callee::Row(number) => number,
             Callee::Later(number) => return self.call_later(number, caller),
@@ -424,7 +430,7 @@ impl Firmware for Kernel {
         if self.parts.races.is_none() {
             return HANDLERS[number](&mut self.parts, caller);
         }
-        let before = shared::before(&mut self.parts, Function::ALL[number], caller);
+        let before = shared::examine_call(&mut self.parts, Function::ALL[number], caller);
         let outcome = HANDLERS[number](&mut self.parts, caller)?;
         shared::after(&mut self.parts, before, &outcome, caller);
         Ok(outcome)
@@ -432,9 +438,9 @@ impl Firmware for Kernel {
 
     fn accessed(&mut self, access: &SharedAccess<'_>, memory: &GuestMemory) -> RepeatPolicy {
         let Parts { races, out, switches, .. } = &mut self.parts;
-        let repeats = races.as_mut().map(|races| races.accessed(access, memory, out));
+        let repeats = races.as_mut().map(|races| races.record_access(access, memory, out));
         if let (Some(switches), Some(thread)) = (switches, access.thread) {
-            switches.made(thread, access.at, access.address);
+            switches.record_access(thread, access.at, access.address);
         }
         repeats.unwrap_or(RepeatPolicy::Redundant)
     }
@@ -445,7 +451,7 @@ impl Firmware for Kernel {
 
     fn switch_at(&mut self, access: &NextAccess) -> Option<SwitchPoint> {
         let Parts { switches, out, .. } = &mut self.parts;
-        switches.as_mut()?.at(access, out)
+        switches.as_mut()?.switch_point(access, out)
     }
 
     fn pure(&self, address: GuestAddr) -> Option<Pure> {
@@ -481,10 +487,10 @@ impl Firmware for Kernel {
     }
 
     fn begins(&mut self, thread: ThreadId, context: &mut TickContext<'_>) {
-        self.parts.calls.motions.begins(thread);
+        self.parts.calls.motions.start_thread(thread);
         self.parts.calls.globals.restore(thread, context.memory);
         if let Some(races) = &mut self.parts.races {
-            races.begins(thread, context.threads, context.now);
+            races.begin_thread(thread, context.threads, context.now);
         }
     }
 
@@ -506,7 +512,7 @@ impl Firmware for Kernel {
         let acted = world.tick(&mut access, context, moment);
         parts.pc.host.tick();
         // These may be stored at addresses chosen by a program.
-        let received = serial::tick(parts, context) | parts.exchange(context);
+        let received = serial::tick(parts, context) | parts.exchange_konnect(context);
         if acted || received || is_touched {
             parts.servo.cache.invalidate(Invalidation::Memory);
         }
@@ -573,7 +579,7 @@ impl Firmware for Kernel {
     }
 
     fn slice_ran(&mut self, thread: ThreadId, start: Cycles, end: Cycles, interrupted_at: Option<CodeAddr>) {
-        self.parts.out.tell(start, EventKind::Trace(Record::Slice { thread, end, interrupted_at }));
+        self.parts.out.emit(start, EventKind::Trace(Record::Slice { thread, end, interrupted_at }));
     }
 
     fn follows_packets(&self, thread: Option<ThreadId>) -> bool {
@@ -582,14 +588,14 @@ impl Firmware for Kernel {
 
     fn packet_ran(&mut self, packet: ExecutedPacket) {
         let ExecutedPacket { thread, at: address, start, cycles, text } = packet;
-        self.parts.out.tell(start, EventKind::Trace(Record::Packet { thread, address, cycles, text }));
+        self.parts.out.emit(start, EventKind::Trace(Record::Packet { thread, address, cycles, text }));
     }
 
     fn trapped(&mut self, trap: &Trap, context: &mut TickContext<'_>) {
         if trap.thread.is_none() {
             context.memory.set(USER_CALL_BACK, GuestAddr::NULL);
         }
-        self.parts.out.tell(context.now, EventKind::Trap(trap.clone()));
+        self.parts.out.emit(context.now, EventKind::Trap(trap.clone()));
     }
 
     fn stack_exceeded(&mut self, thread: ThreadId, used: u32) {

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cc67::limits::{ALL, grouped};
+use cc67::limits::{ALL, with_separators};
 use compiler::diag::Lint;
 use harness::{Scratch, cc67, files};
 use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS};
@@ -324,7 +324,8 @@ fn the_chapter_of_limits_lists_every_limit() {
     for (title, limits) in ALL {
         let _ = write!(text, "\n## {title}\n\n| at most | of | beyond |\n|--:|---|---|\n");
         for limit in limits {
-            let _ = writeln!(text, "| {} | {} | {} |", grouped(limit.number), limit.what, limit.beyond);
+            let _ =
+                writeln!(text, "| {} | {} | {} |", with_separators(limit.number), limit.what, limit.beyond);
         }
     }
     text.push_str("\nNames, string constants and lines are as long as their file allows.\n");

@@ -234,7 +234,7 @@ pub fn page(bytes: &[u8]) {
     // Requests that save files are not tried.
     let messages: Vec<&str> =
         texts.iter().map(String::as_str).filter(|text| !text.contains("save")).collect();
-    let refused = cc67_live::obey(&mut session(), show(), &messages);
+    let refused = cc67_live::execute_messages(&mut session(), show(), &messages);
     assert!(refused.iter().flatten().all(|reason| !reason.is_empty()), "{refused:?}");
 }
 

@@ -87,7 +87,7 @@ fn every_page_belongs_to_a_lint_and_has_its_name() {
     let folder = harness::root().join("cc67/compiler/src/lints/pages");
     for file in harness::files(&folder, "md") {
         let name = file.file_stem().expect("a file has a name").to_string_lossy().into_owned();
-        assert!(Lint::named(&name).is_ok(), "{} is the page of no lint", file.display());
+        assert!(Lint::from_name(&name).is_ok(), "{} is the page of no lint", file.display());
     }
     for lint in Lint::ALL {
         let head = format!("# {}\n\n", lint.name());

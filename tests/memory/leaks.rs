@@ -60,7 +60,7 @@ fn run<E: Engine>(board: &mut Board<E>, images: &[Vec<u8>], times: u32) -> (usiz
             board.start(thread()).expect("it is loaded");
             let end = Ticks::new(board.machine_mut().tick().get() + 25);
             board.run(end, &mut |event| traps += usize::from(matches!(event.kind, EventKind::Trap(_))));
-            board.kill([thread()]);
+            board.stop_threads([thread()]);
         }
     }
     let (bytes, maps) = held();

@@ -61,12 +61,12 @@ impl AccessFilter {
     /// The context continues in a slice of `tick`.
     pub(crate) fn continues(&self, tick: Ticks) {
         if self.tick.replace(tick.get()) != tick.get() {
-            self.forget();
+            self.clear();
         }
     }
 
     /// Forgets all accesses.
-    pub(crate) fn forget(&self) {
+    pub(crate) fn clear(&self) {
         let next = self.slice.get().wrapping_add(1 << SLICE_SHIFT);
         if next == 0 {
             self.entries.iter().for_each(|entry| entry.set(0));
@@ -228,7 +228,7 @@ mod tests {
         let filter = AccessFilter::new();
         filter.note(3, 0x1000_0040);
         for _ in 0..1 << 16 {
-            filter.forget();
+            filter.clear();
             assert!(!filter.knows(3, 0x1000_0040));
         }
     }

@@ -121,7 +121,7 @@ impl Executor for BytecodeEngine {
         let function = program.function_at(entry).ok_or(TrapKind::BadCallTarget { addr: entry })?;
         let observed = self.steps.observed();
         if let Some(observer) = &mut self.steps.observer {
-            observer.forget();
+            observer.clear();
         }
         let encode =
             |program: &Program| EncodedProgram::new(program, observed, &|address| firmware.reads(address));
@@ -467,7 +467,7 @@ fn call_firmware<F: Firmware + ?Sized>(
     if let Some(filter) = &context.filter
         && slice.firmware.take_ordering()
     {
-        filter.forget();
+        filter.clear();
     }
     match outcome {
         Outcome::Done(value) => {

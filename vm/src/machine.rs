@@ -405,7 +405,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             return;
         };
         let available = window.end - window.start - window.callback;
-        let debt = self.threads.debt(thread);
+        let debt = self.threads.overdraft(thread);
         if available <= debt {
             // The last block of the previous slice, or the call-back, takes all of this slice, too.
             self.threads.set_debt(thread, debt - available.max(Cycles::default()));
@@ -415,7 +415,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         let budget = available - debt;
         let (budget, woken) = match progress {
             Progress::Idle => return,
-            Progress::Fresh => match self.enter(thread) {
+            Progress::Fresh => match self.start_context(thread) {
                 Ok(()) => (budget, None),
                 Err(trap) => return self.fault(window.start, thread, trap),
             },
@@ -428,7 +428,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     }
 
     /// Gives `thread` a fresh context at its entry point.
-    fn enter(&mut self, thread: ThreadId) -> Result<(), Trap> {
+    fn start_context(&mut self, thread: ThreadId) -> Result<(), Trap> {
         let entry = self.threads.entry(thread);
         let id = ContextId::of(thread);
         let stack = id.stack_in(self.memory.map(), self.config.strict_stack);
@@ -574,7 +574,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         let next = self.tick.get() + 1;
         ThreadId::all()
             .map(|thread| match *self.threads.state(thread) {
-                ThreadState::Active(_) if self.threads.debt(thread) > Cycles::default() => 0,
+                ThreadState::Active(_) if self.threads.overdraft(thread) > Cycles::default() => 0,
                 ThreadState::Active(Progress::Waiting(Wake::At(time))) => {
                     let tick = time.get() / Cycles::PER_TICK.get();
                     u64::try_from(tick).unwrap_or(0).saturating_sub(next)

@@ -298,7 +298,7 @@ impl GuestMemory {
 
     /// Notes a write to on-chip RAM that did not go through this type.
     #[cfg(feature = "native")]
-    pub(crate) const fn touch(&mut self) {
+    pub(crate) const fn mark_touched(&mut self) {
         self.is_touched = true;
     }
 
@@ -400,7 +400,7 @@ impl GuestMemory {
     #[cold]
     fn refuse_store(&self, addr: GuestAddr, size: u32) -> Result<(), TrapKind> {
         self.check_writable(addr, size)?;
-        if self.silent(addr).is_some() {
+        if self.zero_area(addr).is_some() {
             return Ok(());
         }
         Err(TrapKind::Misaligned { addr, size, access: Access::Write })
@@ -641,12 +641,12 @@ impl GuestMemory {
         } else if let Some(offset) = self.offset_in_flash(addr) {
             self.flash.bytes().get(offset..)
         } else {
-            self.silent(addr)
+            self.zero_area(addr)
         }
     }
 
     /// The bytes from `addr` to the end of its area that reads as 0 on this board, if there is one.
-    fn silent(&self, addr: GuestAddr) -> Option<&[u8]> {
+    fn zero_area(&self, addr: GuestAddr) -> Option<&[u8]> {
         match self.faults {
             FaultPolicy::Trap => None,
             FaultPolicy::Board => SILENCE.get(..index(silent_from(addr)?)),
@@ -655,7 +655,7 @@ impl GuestMemory {
 
     /// Reports whether a store of `len` bytes at `addr` is ignored.
     fn is_silent(&self, addr: GuestAddr, len: u32) -> bool {
-        self.silent(addr).is_some_and(|bytes| bytes.len() >= index(len))
+        self.zero_area(addr).is_some_and(|bytes| bytes.len() >= index(len))
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The compiler's last pass uses this module to insert charges. The verifier requires less: it does not check the
 //! amounts, as an image's charges may state the cycles of the vendor's code instead of these words; but every function
-//! and every iteration of a loop must have a charge, so that every program reaches one ([`uncharged`]).
+//! and every iteration of a loop must have a charge, so that every program reaches one ([`find_uncharged`]).
 //!
 //! The rule. The words of a function fall into **segments** that are executed from their
 //! beginning to their end. A segment begins
@@ -42,11 +42,11 @@ pub fn charge_points(ops: &[Op], body: Range<usize>) -> Vec<(usize, u32)> {
 /// of its own charges.
 #[must_use]
 pub fn stated_points(ops: &[Op], body: Range<usize>) -> Vec<(usize, u32)> {
-    segment_sums(ops, body, stated)
+    segment_sums(ops, body, charged_cycles)
 }
 
 /// The cycles that an instruction charges.
-pub(crate) const fn stated(op: &Op) -> u32 {
+pub(crate) const fn charged_cycles(op: &Op) -> u32 {
     if let Op::Charge { cycles } = op { cycles.0 } else { 0 }
 }
 
@@ -71,9 +71,9 @@ fn segment_sums(ops: &[Op], body: Range<usize>, cost_of: impl Fn(&Op) -> u32) ->
 
 /// A word of `body` that execution can start from, or return to, without meeting a charge.
 #[must_use]
-pub fn uncharged(ops: &[Op], body: Range<usize>) -> Option<usize> {
+pub fn find_uncharged(ops: &[Op], body: Range<usize>) -> Option<usize> {
     let words = ops.get(body.clone()).unwrap_or_default();
-    if words.first().is_none_or(|op| stated(op) == 0) {
+    if words.first().is_none_or(|op| charged_cycles(op) == 0) {
         return Some(body.start);
     }
     let begins = Roles::of(words, body.start).begins;
@@ -107,7 +107,7 @@ pub fn uncharged(ops: &[Op], body: Range<usize>) -> Option<usize> {
 /// The successors of the segment at `first`; none if it is charged.
 fn successors(words: &[Op], begins: &[bool], first: usize, start: usize) -> Vec<usize> {
     let mut found = Vec::new();
-    if stated(&words[first]) != 0 {
+    if charged_cycles(&words[first]) != 0 {
         return found;
     }
     let behind = (first + 1..words.len()).find(|at| begins[*at]).unwrap_or(words.len());
@@ -138,7 +138,7 @@ pub struct Steps {
 /// in memory for instance, passes before the first step. A smaller charge is divided in proportion.
 #[must_use]
 pub fn steps(ops: &[Op], charge: usize) -> Steps {
-    let total = ops.get(charge).map_or(0, stated);
+    let total = ops.get(charge).map_or(0, charged_cycles);
     let mut effects: Vec<(usize, u32)> = Vec::new();
     let mut sum = 0_u32;
     for (word, op) in ops.iter().enumerate().skip(charge + 1) {

@@ -111,7 +111,7 @@ impl Executor for NativeEngine {
 
     fn observe(&mut self, observed: ObservedAccesses) {
         self.observer = Observer::new(observed);
-        self.bytecode.observe_with(self.observer.as_ref().map(Observer::beside));
+        self.bytecode.observe_with(self.observer.as_ref().map(Observer::for_other_contexts));
     }
 
     fn start<F: Firmware + ?Sized>(
@@ -126,7 +126,7 @@ impl Executor for NativeEngine {
         let function = program.function_at(entry).ok_or_else(|| missing.clone())?;
         let old = self.contexts[id.index()].take().map(Context::into_fiber);
         if let Some(observer) = &mut self.observer {
-            observer.forget();
+            observer.clear();
         }
         let facts = FirmwareFacts {
             pure: &|address| firmware.pure(address),

@@ -104,7 +104,7 @@ impl Program {
         let (mut charge, mut call) = (Cycles::default(), Cycles::default());
         for op in &self.ops {
             match op.kind() {
-                OpKind::Charge => charge = charge.max(Cycles::new(meter::stated(op).into())),
+                OpKind::Charge => charge = charge.max(Cycles::new(meter::charged_cycles(op).into())),
                 OpKind::Call => {
                     let cost = firmware_callee(op).and_then(pure).map_or(Cycles::default(), |pure| pure.cost);
                     call = call.max(cost);

@@ -214,7 +214,7 @@ impl Threads {
     }
 
     /// The overdraft of `thread` in its last slice, as a number not below zero.
-    pub(crate) fn debt(&self, thread: ThreadId) -> Cycles {
+    pub(crate) fn overdraft(&self, thread: ThreadId) -> Cycles {
         self.slots[thread.index()].debt
     }
 

@@ -113,7 +113,7 @@ pub(crate) unsafe fn store<T>(pointer: *mut T, value: T) -> Result<(), Outcome> 
 }
 
 /// Copies a text into a buffer, which needs room for at least the terminating 0.
-pub(crate) fn put(buffer: &mut [u8], text: &str) -> Result<(), Outcome> {
+pub(crate) fn copy_text(buffer: &mut [u8], text: &str) -> Result<(), Outcome> {
     if buffer.is_empty() {
         return Err(Outcome::Argument);
     }

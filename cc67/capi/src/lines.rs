@@ -2,7 +2,7 @@
 
 use std::ffi::{c_char, c_int, c_void};
 
-use crate::border::{buffer, guarded, guarded_or, put, text};
+use crate::border::{buffer, copy_text, guarded, guarded_or, text};
 use crate::handle::board;
 use crate::{Client, Outcome};
 
@@ -49,12 +49,12 @@ pub unsafe extern "C" fn cc67_write_line_read_line(
     guarded(|| {
         // SAFETY: the caller vouches for the buffer.
         let reply = unsafe { buffer(reply, size) };
-        put(reply, "")?;
+        copy_text(reply, "")?;
         // SAFETY: the caller vouches for the text.
         let line = unsafe { text(line) }?;
         // SAFETY: the caller vouches for the client.
         let answer = unsafe { board(client) }?.write_line_read_line(line)?;
-        put(reply, &answer)
+        copy_text(reply, &answer)
     })
 }
 
@@ -72,10 +72,10 @@ pub unsafe extern "C" fn cc67_read_line_timeout(
     guarded(|| {
         // SAFETY: the caller vouches for the buffer.
         let reply = unsafe { buffer(reply, size) };
-        put(reply, "")?;
+        copy_text(reply, "")?;
         // SAFETY: the caller vouches for the client.
         let line = unsafe { board(client) }?.read_line_timeout(milliseconds)?;
-        put(reply, &line)
+        copy_text(reply, &line)
     })
 }
 

@@ -75,7 +75,7 @@ pub unsafe extern "C" fn cc67_user_data(client: *mut Client, element: c_int, val
         // SAFETY: the caller vouches for the client.
         let found = unsafe { board(client) }?.with_session(|session| {
             let found = session.user_data(element).ok_or(Outcome::Argument)?;
-            present(session).map(|()| found)
+            check_connected(session).map(|()| found)
         });
         // SAFETY: the caller vouches for the place.
         unsafe { store(value, found?) }
@@ -93,15 +93,15 @@ pub unsafe extern "C" fn cc67_set_user_data(client: *mut Client, element: c_int,
         // SAFETY: the caller vouches for the client.
         unsafe { board(client) }?.with_session(|session| {
             let is_stored = session.set_user_data(element, value);
-            present(session)?;
+            check_connected(session)?;
             if is_stored { Ok(()) } else { Err(Outcome::Argument) }
         })
     })
 }
 
 /// Returns an error if the controller can no longer be reached.
-fn present(session: &Session<AnyTarget>) -> Result<(), Outcome> {
-    if session.target().lost().is_some() { Err(Outcome::NotConnected) } else { Ok(()) }
+fn check_connected(session: &Session<AnyTarget>) -> Result<(), Outcome> {
+    if session.target().loss_reason().is_some() { Err(Outcome::NotConnected) } else { Ok(()) }
 }
 
 /// Drives an input bit, 0 to 2047, from outside: 0 low, any other number high.

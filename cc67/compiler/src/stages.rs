@@ -21,8 +21,9 @@ use crate::{lower, passes, pp};
 pub fn lower(path: &Path, source: Vec<u8>, files: &(dyn pp::Files + Sync)) -> Result<String, String> {
     driver::on_large_stack(|| {
         let mut context = CompileContext::default();
-        let unit =
-            CompileRequest { path, options: &Options::default(), files }.front(source, &mut context).unit;
+        let unit = CompileRequest { path, options: &Options::default(), files }
+            .run_front_end(source, &mut context)
+            .unit;
         if let Some(error) =
             context.sink.diagnostics().iter().find(|found| found.severity == crate::diag::Severity::Error)
         {
@@ -67,7 +68,7 @@ pub fn pass(name: &str, ir: &str) -> Result<String, String> {
 /// The error in the text.
 pub fn legalize(ir: &str) -> Result<String, String> {
     let unit = read(ir)?;
-    let shown = |function| show::legalized(function, &unit.signatures, &unit.symbols);
+    let shown = |function| show::print_legalized(function, &unit.signatures, &unit.symbols);
     Ok(unit.functions.into_iter().map(shown).collect::<Vec<_>>().join("\n"))
 }
 
@@ -83,7 +84,8 @@ pub fn bytecode(ir: &str) -> Result<String, String> {
         let name = unit.symbols.symbol_name(function.symbol).to_owned();
         let generated = generator.function(function, &name).map_err(|error| error.message.clone())?;
         // Writing to a string cannot fail.
-        let _ = write!(words, "\n{name}:\n{}", show::words(generator.text(), &generated, &unit.symbols));
+        let _ =
+            write!(words, "\n{name}:\n{}", show::print_words(generator.text(), &generated, &unit.symbols));
     }
     let (_, pool) = generator.finish();
     let mut head = String::new();

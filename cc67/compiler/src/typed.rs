@@ -218,22 +218,22 @@ impl Function {
 
     /// Visits every statement of the body, outer ones first, except those in statement expressions.
     pub fn each_stmt<'f>(&'f self, visit: &mut dyn FnMut(&'f Stmt)) {
-        fn each<'f>(stmts: &'f [Stmt], visit: &mut dyn FnMut(&'f Stmt)) {
+        fn visit_stmts<'f>(stmts: &'f [Stmt], visit: &mut dyn FnMut(&'f Stmt)) {
             for stmt in stmts {
                 visit(stmt);
-                stmt.lists().for_each(|inner| each(inner, visit));
+                stmt.lists().for_each(|inner| visit_stmts(inner, visit));
             }
         }
-        each(&self.body, visit);
+        visit_stmts(&self.body, visit);
     }
 
     /// Visits every list of statements of the body, outer ones first, except those in statement expressions.
     pub fn each_list<'f>(&'f self, visit: &mut dyn FnMut(&'f [Stmt])) {
-        fn each<'f>(stmts: &'f [Stmt], visit: &mut dyn FnMut(&'f [Stmt])) {
+        fn visit_lists<'f>(stmts: &'f [Stmt], visit: &mut dyn FnMut(&'f [Stmt])) {
             visit(stmts);
-            stmts.iter().flat_map(Stmt::lists).for_each(|inner| each(inner, visit));
+            stmts.iter().flat_map(Stmt::lists).for_each(|inner| visit_lists(inner, visit));
         }
-        each(&self.body, visit);
+        visit_lists(&self.body, visit);
     }
 }
 

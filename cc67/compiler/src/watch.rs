@@ -149,7 +149,7 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
     let before = text.len() as u32;
     text.extend(format!("\ndouble {FUNCTION}(void) {{ return (\n{expression}\n); }}\n").bytes());
     let request = CompileRequest { path: scope.path, options: scope.options, files: scope.files };
-    let FrontEndOutput { main, mut unit } = request.front(text, &mut context);
+    let FrontEndOutput { main, mut unit } = request.run_front_end(text, &mut context);
     let CompileContext { sources, names, mut sink } = context;
     let error = sink.diagnostics().iter().find(|diagnostic| diagnostic.severity == Severity::Error);
     if let Some(error) = error {
@@ -457,7 +457,8 @@ impl Expression {
                 8 * size_of(place.ty) as u32
             }
         };
-        let is_signed = place.ty != Types::UNSIGNED_LONG_LONG && constants::wrap(-1, place.ty) < 0;
+        let is_signed =
+            place.ty != Types::UNSIGNED_LONG_LONG && constants::truncate_to_type(-1, place.ty) < 0;
         let span = libm::ldexp(1.0, width.cast_signed());
         Some(if is_signed { (-span / 2.0, span / 2.0 - 1.0) } else { (0.0, span - 1.0) })
     }
@@ -483,7 +484,7 @@ pub(crate) fn read(ty: TypeId, bytes: [u8; 8]) -> Constant {
     match ty {
         Types::DOUBLE => Constant::Float(f64::from_le_bytes(bytes)),
         Types::FLOAT => Constant::Float(f32::from_bits(all as u32).into()),
-        _ => Constant::Int(constants::wrap(all, ty)),
+        _ => Constant::Int(constants::truncate_to_type(all, ty)),
     }
 }
 

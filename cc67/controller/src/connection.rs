@@ -67,7 +67,7 @@ impl ControllerLink {
         let Setup { config, options, programs, offered, values, stimulus, .. } = setup;
         let mut target = Controller::new(self.0, &options, terms, Box::new(progress));
         target.serve(config.files, config.answers);
-        target.accompany(stimulus)?;
+        target.start_stimulus(stimulus)?;
         target.begin(&programs, &values)?;
         Ok(Session::on_target(target, options, programs, offered))
     }

@@ -129,7 +129,7 @@ impl Controller {
     ///
     /// # Errors
     /// A statement needs a model of the machine.
-    pub(crate) fn accompany(&mut self, stimulus: Stimulus) -> Result<(), HostError> {
+    pub(crate) fn start_stimulus(&mut self, stimulus: Stimulus) -> Result<(), HostError> {
         self.bench = Bench::new(stimulus)?;
         Ok(())
     }
@@ -274,7 +274,7 @@ impl Target for Controller {
         Ok(())
     }
 
-    fn lost(&self) -> Option<&str> {
+    fn loss_reason(&self) -> Option<&str> {
         self.lost.as_deref()
     }
 
@@ -347,7 +347,7 @@ impl Target for Controller {
         let is_forced = self.loading.terms.is_forced;
         let loaded = client.load(&image, is_forced, &mut |piece| progress(program.thread, piece));
         loaded.map_err(link)?;
-        self.monitor.get_mut().forget(program.thread);
+        self.monitor.get_mut().invalidate(program.thread);
         self.sampling = self.sampling.take().filter(|sampling| sampling.thread() != program.thread);
         self.monitor.get_mut().note_change();
         self.threads.note_loaded(program.thread, program.debug_info());
@@ -366,7 +366,7 @@ impl Target for Controller {
     }
 
     fn stop(&mut self, thread: ThreadId) {
-        match self.client.get_mut().kill(thread) {
+        match self.client.get_mut().stop_thread(thread) {
             Ok(()) => self.threads.note_stopped(thread),
             Err(error) => self.note_error(&error),
         }
@@ -420,7 +420,7 @@ impl Target for Controller {
         self.poll();
     }
 
-    fn glance(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()> {
+    fn peek(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()> {
         self.seen.look(address, bytes)
     }
 
@@ -453,7 +453,7 @@ impl Target for Controller {
         Ok(())
     }
 
-    fn knows(&self, item: Item) -> bool {
+    fn has_item(&self, item: Item) -> bool {
         match item.kind() {
             "dest" | "pos" | "adc" => true,
             "bit" => item

@@ -109,7 +109,7 @@ impl Monitor {
     }
 
     /// Notes that another program is loaded into its thread.
-    pub(crate) fn forget(&mut self, thread: ThreadId) {
+    pub(crate) fn invalidate(&mut self, thread: ThreadId) {
         self.resident = self.resident.filter(|resident| resident.thread != thread);
     }
 

@@ -214,5 +214,5 @@ fn model<T: Target>(program: &UserProgram, session: &Session<T>) -> Result<Model
         return compiler::debug::of_image(&program.path, &program.image, session.options());
     }
     let text = files::read(&program.path).map_err(|error| format!("cannot read it: {error}"))?;
-    Model::of(&program.path, text, session.options(), &Disk, program.thread, &program.image)
+    Model::build(&program.path, text, session.options(), &Disk, program.thread, &program.image)
 }

@@ -184,7 +184,7 @@ impl<T: Target> Shell<T> {
         if !self.debugger.session().can(Capability::StopTime) {
             let Self { debugger, early, .. } = self;
             let mut teller = EventPrinter::new(debugger, early, output);
-            debugger.catch_up(&mut |event| teller.tell(event));
+            debugger.catch_up(&mut |event| teller.report(event));
         }
         match name {
             _ if is_move(name) => self.move_on(name, rest, output),
@@ -237,7 +237,7 @@ impl<T: Target> Shell<T> {
     fn control(&mut self, name: &str, rest: &str) -> Result<String, DebugError> {
         let thread = if rest.is_empty() { self.debugger.thread() } else { thread_of(rest)? };
         match name {
-            "kill" => self.debugger.kill(thread),
+            "kill" => self.debugger.stop_thread(thread),
             _ => self.debugger.pause(thread, name == "pause")?,
         }
         Ok(String::new())
@@ -345,7 +345,7 @@ impl<T: Target> Shell<T> {
     fn once(&mut self, name: &str, place: &str, output: Output<'_>) -> Result<Stop, DebugError> {
         let Self { debugger, early, .. } = self;
         let mut teller = EventPrinter::new(debugger, early, output);
-        let stop = go(debugger, name, place, &mut |event| teller.tell(event));
+        let stop = move_forward(debugger, name, place, &mut |event| teller.report(event));
         let scene = std::mem::take(&mut teller.scene);
         self.show_early(!name.starts_with("reverse"), output);
         output(&scene);
@@ -386,7 +386,7 @@ impl<T: Target> Shell<T> {
         let is_forward = tick > debugger.session().tick();
         let stop = if is_forward {
             let mut teller = EventPrinter::new(debugger, early, output);
-            let stop = debugger.run_to(tick, &mut |event| teller.tell(event));
+            let stop = debugger.run_to(tick, &mut |event| teller.report(event));
             let scene = std::mem::take(&mut teller.scene);
             output(&scene);
             stop
@@ -493,7 +493,7 @@ impl<T: Target> Shell<T> {
 }
 
 /// Executes a movement of the board.
-fn go<T: Target>(
+fn move_forward<T: Target>(
     debugger: &mut Debugger<T>,
     name: &str,
     place: &str,
@@ -521,14 +521,14 @@ fn go<T: Target>(
         "slice" => debugger.step_slice(events)?,
         _ if name.starts_with("reverse") => {
             debugger.session().require(Capability::Snapshots)?;
-            back(debugger, name)?
+            move_back(debugger, name)?
         }
         _ => debugger.go_on(events),
     })
 }
 
 /// Moves back in time by a command.
-fn back<T: Target>(debugger: &mut Debugger<T>, name: &str) -> Result<Stop, DebugError> {
+fn move_back<T: Target>(debugger: &mut Debugger<T>, name: &str) -> Result<Stop, DebugError> {
     Ok(match name {
         "reverse-continue" => debugger.reverse_continue(),
         "reverse-step" => debugger.reverse_step()?,
@@ -573,7 +573,7 @@ impl<'a, 'b> EventPrinter<'a, 'b> {
         Self { infos, early, scene: String::new(), output }
     }
 
-    fn tell(&mut self, event: &Event) {
+    fn report(&mut self, event: &Event) {
         match &event.kind {
             EventKind::ConsoleLine(line) if self.early.take(line) => {}
             EventKind::ConsoleLine(line) => (self.output)(&format!("{}\n", String::from_utf8_lossy(line))),

@@ -52,7 +52,7 @@ pub fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> {
         | EventKind::Loaded(..)
         | EventKind::Aborted => None,
         EventKind::Remark(remark) => {
-            (remark.message.severity() > Severity::Detail).then(|| words(remark, programs))
+            (remark.message.severity() > Severity::Detail).then(|| remark_text(remark, programs))
         }
         EventKind::Host(text) | EventKind::Unmet(text) => Some(text.clone()),
         EventKind::Halted(text) => Some(text.trim_end().to_owned()),
@@ -70,8 +70,8 @@ pub fn scene(event: &Event) -> Option<&Scene> {
 
 /// A remark with its subject and position: "thread 1 at home.c:12:5 in `main`: SetBit(3000): …".
 #[must_use]
-pub fn words(remark: &Remark, programs: &[DebugInfo]) -> String {
-    let who = who(remark, programs);
+pub fn remark_text(remark: &Remark, programs: &[DebugInfo]) -> String {
+    let who = subject_text(remark, programs);
     if let Some(other) = remark.message.other() {
         let text = remark.message.to_string().replace(&other.to_string(), &place_of(other, programs));
         // Most texts continue after the position; others begin with the function.
@@ -90,7 +90,7 @@ pub fn words(remark: &Remark, programs: &[DebugInfo]) -> String {
 
 /// Names the subject and the position of a remark: "thread 1 at home.c:12:5 in `main`"; empty for the board.
 #[must_use]
-pub fn who(remark: &Remark, programs: &[DebugInfo]) -> String {
+pub fn subject_text(remark: &Remark, programs: &[DebugInfo]) -> String {
     let who = match remark.speaker {
         Speaker::Board => String::new(),
         Speaker::Thread(thread) => format!("thread {thread}"),

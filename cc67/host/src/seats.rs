@@ -95,7 +95,7 @@ impl Seats {
 
 impl Seat {
     /// Notes that the client has sent data.
-    pub fn hear(&self) {
+    pub fn mark_active(&self) {
         let mut taken = self.seats.taken();
         taken.events += 1;
         let last = taken.events;
@@ -127,7 +127,7 @@ mod tests {
         };
         let names = || closed.lock().expect("no thread panics").clone();
         let first = take("first").seat;
-        first.hear();
+        first.mark_active();
         let _second = take("second");
         let third = take("third");
         assert!(!third.has_closed_another && names().is_empty());
@@ -135,9 +135,9 @@ mod tests {
         let fourth = take("fourth");
         assert!(fourth.has_closed_another);
         assert_eq!(names(), ["second"]);
-        third.seat.hear();
-        fourth.seat.hear();
-        first.hear();
+        third.seat.mark_active();
+        fourth.seat.mark_active();
+        first.mark_active();
         // Of the others, the one whose last data are the oldest.
         let fifth = take("fifth");
         assert_eq!(names(), ["second", "third"]);

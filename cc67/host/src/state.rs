@@ -122,7 +122,7 @@ impl State {
 
     /// Returns whether the controller cannot be reached any more.
     pub(super) fn is_lost(&self) -> bool {
-        self.session.target().lost().is_some()
+        self.session.target().loss_reason().is_some()
     }
 
     /// Connects again: data in transit are dropped.

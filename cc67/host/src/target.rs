@@ -93,7 +93,7 @@ pub trait Target {
     }
 
     /// The reason why a connected target cannot be reached any more; `None` of one that can be.
-    fn lost(&self) -> Option<&str> {
+    fn loss_reason(&self) -> Option<&str> {
         None
     }
 
@@ -228,7 +228,7 @@ pub trait Target {
     /// Reads memory from an address on as far as it is known without an exchange: of a connected target what its last
     /// status record has, and elements of `persist.UserData` that are at most about a second old. `None` where a byte is
     /// unknown.
-    fn glance(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()> {
+    fn peek(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()> {
         self.read(address, bytes).ok()
     }
 
@@ -253,7 +253,7 @@ pub trait Target {
     fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError>;
 
     /// Returns whether an item exists on this target.
-    fn knows(&self, item: Item) -> bool {
+    fn has_item(&self, item: Item) -> bool {
         let _ = item;
         true
     }

@@ -109,6 +109,10 @@ pub struct Show {
 
 /// Executes the requests in messages of a page, one after another, without a connection: for tests of requests. Returns
 /// the reason for each that was rejected.
-pub fn obey<T: Target>(session: &mut Session<T>, show: Show, messages: &[&str]) -> Vec<Option<String>> {
-    board::obey(session, show, messages)
+pub fn execute_messages<T: Target>(
+    session: &mut Session<T>,
+    show: Show,
+    messages: &[&str],
+) -> Vec<Option<String>> {
+    board::execute_messages(session, show, messages)
 }

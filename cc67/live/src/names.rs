@@ -56,9 +56,9 @@ pub(crate) fn files_of(source: &Path, include_dirs: &[PathBuf]) -> Vec<PathBuf> 
     while let Some(path) = found.get(next).cloned() {
         next += 1;
         let Ok(bytes) = fs::read(&path) else { continue };
-        let text = decoded(&bytes);
+        let text = decode_text(&bytes);
         let folder = path.parent().unwrap_or(Path::new(""));
-        for name in text.lines().filter_map(included) {
+        for name in text.lines().filter_map(included_file) {
             let folders = std::iter::once(folder).chain(include_dirs.iter().map(PathBuf::as_path));
             let file = folders.map(|folder| folder.join(name.replace('\\', "/"))).find(|file| file.is_file());
             if let Some(file) = file
@@ -73,13 +73,13 @@ pub(crate) fn files_of(source: &Path, include_dirs: &[PathBuf]) -> Vec<PathBuf> 
 }
 
 /// Returns the file named by an `#include "…"`.
-fn included(line: &str) -> Option<&str> {
+fn included_file(line: &str) -> Option<&str> {
     let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?;
     rest.trim_start().strip_prefix('"')?.split('"').next()
 }
 
 /// Decodes bytes: UTF-8, or otherwise Latin-1.
-pub(crate) fn decoded(bytes: &[u8]) -> String {
+pub(crate) fn decode_text(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
         Err(_) => bytes.iter().copied().map(char::from).collect(),
@@ -90,7 +90,7 @@ pub(crate) fn decoded(bytes: &[u8]) -> String {
 pub(crate) fn bits_of(texts: &[String]) -> BTreeMap<Bit, UsedBit> {
     let texts: Vec<String> = texts.iter().map(|text| without_comments(text)).collect();
     let macros: BTreeMap<&str, &str> =
-        texts.iter().flat_map(|text| text.lines().filter_map(defined)).collect();
+        texts.iter().flat_map(|text| text.lines().filter_map(macro_definition)).collect();
     let mut bits: BTreeMap<Bit, UsedBit> = BTreeMap::new();
     // A bit that is both read and written has the name with which it is read.
     let accesses = [BitAccess::Read, BitAccess::Write].into_iter().flat_map(|access| {
@@ -117,7 +117,7 @@ pub(crate) fn bits_of(texts: &[String]) -> BTreeMap<Bit, UsedBit> {
 }
 
 /// Name and text of a macro without arguments.
-fn defined(line: &str) -> Option<(&str, &str)> {
+fn macro_definition(line: &str) -> Option<(&str, &str)> {
     let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("define")?;
     let rest = rest.strip_prefix([' ', '\t'])?.trim_start();
     let end = rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))?;
@@ -258,12 +258,15 @@ mod tests {
 
     #[test]
     fn text_that_is_not_utf8_is_latin1() {
-        assert_eq!((decoded(b"\xe9t\xe9"), decoded("été".as_bytes())), ("été".to_owned(), "été".to_owned()));
+        assert_eq!(
+            (decode_text(b"\xe9t\xe9"), decode_text("été".as_bytes())),
+            ("été".to_owned(), "été".to_owned())
+        );
     }
 
     #[test]
     fn includes_between_quotation_marks_are_followed() {
-        assert_eq!(included("  # include \"a.h\" // b"), Some("a.h"));
-        assert_eq!(included("#include <a.h>"), None);
+        assert_eq!(included_file("  # include \"a.h\" // b"), Some("a.h"));
+        assert_eq!(included_file("#include <a.h>"), None);
     }
 }

@@ -109,7 +109,7 @@ fn machine_file(board: &'static TargetBoard, name: &str, folder: &Path, text: &s
     let file = MachineFile::parse_for(board, text);
     let mut file = file.map_err(|error| input(format!("{name}:{}:{}: {error}", error.line, error.column)))?;
     file.set_name(Path::new(name));
-    file.beside(folder);
+    file.resolve_paths(folder);
     Ok(file)
 }
 

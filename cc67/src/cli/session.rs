@@ -93,7 +93,7 @@ pub(crate) fn boot(file: &Path) -> Result<BootedFirmware> {
 /// The work of a command on a board of any target.
 pub(crate) trait Work {
     /// Does it.
-    fn on<T: Target>(self, rig: BoardSession<T>) -> Result<Exit>;
+    fn on<T: Target>(self, board: BoardSession<T>) -> Result<Exit>;
 }
 
 impl Setup {
@@ -195,36 +195,38 @@ impl Setup {
             #[cfg(feature = "native")]
             // Beside real images there may be bytecode, which the usual engine executes.
             CodeFor::Engine(EngineName::Native | EngineName::Dsp) => {
-                work.on(self.rig(NativeEngine::default())?)
+                work.on(self.modelled_session(NativeEngine::default())?)
             }
             #[cfg(not(feature = "native"))]
             CodeFor::Engine(EngineName::Native) => {
                 anyhow::bail!("this cc67 is built without the native engine")
             }
-            CodeFor::Engine(_) | CodeFor::Firmware(_) | CodeFor::Controller(_) => work.on(self.rig_of_any()?),
+            CodeFor::Engine(_) | CodeFor::Firmware(_) | CodeFor::Controller(_) => {
+                work.on(self.target_session()?)
+            }
         }
     }
 
     /// Does the work on the engine that a debugger can hold, if editors may attach one.
     pub(crate) fn debugged(self, debugger: Option<AttachPoint>, work: impl Work) -> Result<Exit> {
         let Some(debugger) = debugger else { return self.on_its_target(work) };
-        let mut rig = self.rig_of_any()?;
-        rig.attendant = Some(Box::new(debugger));
-        work.on(rig)
+        let mut board = self.target_session()?;
+        board.attendant = Some(Box::new(debugger));
+        work.on(board)
     }
 
     /// A modelled board as the arguments want it, on an engine of the caller's choice.
-    pub(crate) fn rig<E: Engine>(self, engine: E) -> Result<BoardSession<Board<E>>> {
+    pub(crate) fn modelled_session<E: Engine>(self, engine: E) -> Result<BoardSession<Board<E>>> {
         self.rig_with(|session, _| session.session_on(engine))
     }
 
     /// A firmware file as the arguments want it.
-    pub(crate) fn rig_of_firmware(self, firmware: &BootedFirmware) -> Result<BoardSession<BootedTarget>> {
+    pub(crate) fn firmware_session(self, firmware: &BootedFirmware) -> Result<BoardSession<BootedTarget>> {
         self.rig_with(|session, _| session.session_on_firmware(firmware))
     }
 
     /// The target that was requested; the modelled board on the interpreter.
-    pub(crate) fn rig_of_any(mut self) -> Result<BoardSession<AnyTarget>> {
+    pub(crate) fn target_session(mut self) -> Result<BoardSession<AnyTarget>> {
         let controller = self.controller.take();
         self.rig_with(|session, code| match (code, controller) {
             (_, Some(ConnectedController { connection, terms })) => {
@@ -268,7 +270,7 @@ impl Setup {
                 "a debugged board has no peer at its serial port, which could not go back in time: `--uart-input`"
             );
         }
-        Ok(self.rig_of_any()?.session)
+        Ok(self.target_session()?.session)
     }
 
     /// Prepares for a recording: on a connected controller programs start when it has begun.

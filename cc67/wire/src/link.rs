@@ -105,7 +105,7 @@ impl BoardLink {
     /// The link is lost.
     pub fn send(&self, bytes: Vec<u8>) -> Result<(), WireError> {
         self.unwritten.fetch_add(bytes.len(), Ordering::Relaxed);
-        self.outgoing.send(Outgoing::Bytes(bytes)).map_err(|_| self.lost())
+        self.outgoing.send(Outgoing::Bytes(bytes)).map_err(|_| self.lost_error())
     }
 
     /// The number of bytes that the board has not taken yet.
@@ -122,7 +122,7 @@ impl BoardLink {
         match self.incoming.recv_timeout(until.saturating_duration_since(now())) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(RecvTimeoutError::Timeout) => Ok(None),
-            Err(RecvTimeoutError::Disconnected) => Err(self.lost()),
+            Err(RecvTimeoutError::Disconnected) => Err(self.lost_error()),
         }
     }
 
@@ -145,13 +145,13 @@ impl BoardLink {
             return Ok(());
         }
         let (answer, inbox) = channel();
-        self.outgoing.send(Outgoing::Claim(now() + within, answer)).map_err(|_| self.lost())?;
+        self.outgoing.send(Outgoing::Claim(now() + within, answer)).map_err(|_| self.lost_error())?;
         match inbox.recv_timeout(within + Duration::from_secs(1)) {
             Ok(ClaimResult::Taken) => Ok(()),
             Ok(ClaimResult::InUse) | Err(RecvTimeoutError::Timeout) => {
                 Err(WireError::InUse { place: self.place.clone(), seconds: within.as_secs_f64() })
             }
-            Ok(ClaimResult::NotConnected) | Err(RecvTimeoutError::Disconnected) => Err(self.lost()),
+            Ok(ClaimResult::NotConnected) | Err(RecvTimeoutError::Disconnected) => Err(self.lost_error()),
         }
     }
 
@@ -164,7 +164,7 @@ impl BoardLink {
     }
 
     /// The error for a lost link.
-    pub(crate) fn lost(&self) -> WireError {
+    pub(crate) fn lost_error(&self) -> WireError {
         WireError::Disconnected { place: self.place.clone(), during: String::new() }
     }
 }

@@ -21,7 +21,7 @@ type Header = elf::FileHeader32<LittleEndian>;
 /// # Errors
 /// The bytes are something else, or incomplete.
 pub(crate) fn read(bytes: &[u8]) -> Result<Image, Error> {
-    let file = File::parse(bytes).map_err(damaged)?;
+    let file = File::parse(bytes).map_err(structure_error)?;
     let header = file.elf_header();
     if header.e_machine(LittleEndian) != elf::EM_TI_C6000 || header.e_type(LittleEndian) != elf::ET_EXEC {
         return Err(Error { at: 16, kind: ErrorKind::OtherElf });
@@ -85,7 +85,7 @@ impl<'a> Reader<'a> {
             let contents = if is_absent {
                 Contents::Uninitialised(size)
             } else {
-                let data = header.data(LittleEndian, self.bytes).map_err(damaged)?;
+                let data = header.data(LittleEndian, self.bytes).map_err(structure_error)?;
                 let part = Part::Data(sections.len() + 1);
                 spend(&mut self.data_left, u64::from(size), at, part)?;
                 Contents::Data(data.to_vec())
@@ -97,7 +97,7 @@ impl<'a> Reader<'a> {
             };
             let align = header.sh_addralign(LittleEndian);
             let address = header.sh_addr(LittleEndian);
-            let name = self.table().section_name(LittleEndian, header).map_err(damaged)?;
+            let name = self.table().section_name(LittleEndian, header).map_err(structure_error)?;
             sections.push(Section {
                 name: self.name(name, at)?,
                 physical: address,
@@ -119,7 +119,7 @@ impl<'a> Reader<'a> {
         let mut symbols = Vec::new();
         for (at, symbol) in (0..).zip(table.iter()) {
             let kind = symbol.st_type();
-            let name = symbol.name(LittleEndian, table.strings()).map_err(damaged)?;
+            let name = symbol.name(LittleEndian, table.strings()).map_err(structure_error)?;
             if name.is_empty() || kind == elf::STT_SECTION {
                 continue;
             }
@@ -162,10 +162,10 @@ impl<'a> Reader<'a> {
         let Some((_, header)) = self.table().section_by_name(LittleEndian, NOTE.as_bytes()) else {
             return Ok((0, 0));
         };
-        let Some(mut notes) = header.notes(LittleEndian, self.bytes).map_err(damaged)? else {
+        let Some(mut notes) = header.notes(LittleEndian, self.bytes).map_err(structure_error)? else {
             return Ok((0, 0));
         };
-        while let Some(note) = notes.next().map_err(damaged)? {
+        while let Some(note) = notes.next().map_err(structure_error)? {
             if note.name() == NOTE_NAME && note.n_type(LittleEndian).0 == NOTE_FIRMWARE {
                 let words = note.desc().as_chunks::<4>().0;
                 let word = |index: usize| words.get(index).copied().map_or(0, u32::from_le_bytes);
@@ -182,6 +182,6 @@ impl<'a> Reader<'a> {
 }
 
 /// The error for a file with an invalid structure.
-const fn damaged(error: object::read::Error) -> Error {
+const fn structure_error(error: object::read::Error) -> Error {
     Error { at: 0, kind: ErrorKind::Elf(error) }
 }

@@ -118,7 +118,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
     }
 
     /// Sets whether an unmapped address reads as 0 and ignores writes, as on a board; otherwise an access ends the run.
-    pub const fn forgive(&mut self, whether: bool) {
+    pub const fn tolerate_unmapped(&mut self, whether: bool) {
         self.hardware.forgives = whether;
     }
 
@@ -316,8 +316,8 @@ impl<A: ExternalHardware> BootedBoard<A> {
     /// Returns the number of times the firmware has polled for a byte from the PC; it does not poll while it executes a
     /// command.
     #[must_use]
-    pub const fn looks(&self) -> u64 {
-        self.hardware.window.link.looks()
+    pub const fn poll_count(&self) -> u64 {
+        self.hardware.window.link.poll_count()
     }
 
     /// The bytes sent by the firmware since the last call of this or of [`take_lines`](Self::take_lines), with their
@@ -329,7 +329,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
     /// From now on also keeps the bytes from which [`take_lines`](Self::take_lines) makes lines, for a PC outside this
     /// process.
     pub fn tap_wire(&mut self) {
-        self.sent.tap();
+        self.sent.keep_bytes();
     }
 
     /// Takes the bytes of the link since the last call.

@@ -64,20 +64,20 @@ impl<A: ExternalHardware> Hardware<A> {
     fn load(&mut self, addr: u32, bytes: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
         let now = clock.cycle();
         clock.stall(u64::from(self.register_waits));
-        if let Some(offset) = inside(addr, FPGA.base.get(), FPGA.size) {
-            return Ok(self.look(offset, bytes, now, clock));
+        if let Some(offset) = offset_in_range(addr, FPGA.base.get(), FPGA.size) {
+            return Ok(self.read_register(offset, bytes, now, clock));
         }
         self.touches += 1;
-        if let Some(offset) = inside(addr, TIMER, TIMER_SIZE) {
+        if let Some(offset) = offset_in_range(addr, TIMER, TIMER_SIZE) {
             return Ok(self.timer.read(offset, now));
         }
-        if let Some(offset) = inside(addr, FLASH.base.get(), FLASH.size) {
+        if let Some(offset) = offset_in_range(addr, FLASH.base.get(), FLASH.size) {
             return Ok(self.flash(offset, bytes, now));
         }
         if Control::has(addr) {
             return Ok(self.control.read(addr));
         }
-        if addr < ROM_SIZE || self.forgives { Ok(0) } else { Err(unmapped(addr, Access::Read)) }
+        if addr < ROM_SIZE || self.forgives { Ok(0) } else { Err(unmapped_trap(addr, Access::Read)) }
     }
 
     fn flash(&mut self, offset: u32, bytes: u32, now: u64) -> u32 {
@@ -91,11 +91,11 @@ impl<A: ExternalHardware> Hardware<A> {
     }
 
     /// Reads a register of the FPGA. At the first poll of the link the processor stops: the board is ready.
-    fn look(&mut self, offset: u32, bytes: u32, now: u64, clock: &mut Clock) -> u32 {
-        let (looks, touches) = (self.window.link.looks(), self.window.touches());
+    fn read_register(&mut self, offset: u32, bytes: u32, now: u64, clock: &mut Clock) -> u32 {
+        let (looks, touches) = (self.window.link.poll_count(), self.window.touches());
         let value = self.window.read(offset, bytes, now);
         self.touches += self.window.touches() - touches;
-        if self.first_look.is_none() && self.window.link.looks() != looks {
+        if self.first_look.is_none() && self.window.link.poll_count() != looks {
             self.first_look = Some(clock.cycle());
             clock.set_left(0);
         }
@@ -107,19 +107,19 @@ impl<A: ExternalHardware> Hardware<A> {
         let now = clock.cycle();
         clock.stall(u64::from(self.register_waits));
         self.touches += 1;
-        if let Some(offset) = inside(addr, FPGA.base.get(), FPGA.size) {
+        if let Some(offset) = offset_in_range(addr, FPGA.base.get(), FPGA.size) {
             self.window.write(offset, bytes, value, now);
-        } else if let Some(offset) = inside(addr, TIMER, TIMER_SIZE) {
+        } else if let Some(offset) = offset_in_range(addr, TIMER, TIMER_SIZE) {
             self.timer.write(offset, value, now);
             let left = self.timer.next_match().saturating_sub(now);
             clock.set_left(clock.left().min(i64::try_from(left).unwrap_or(i64::MAX)));
-        } else if let Some(offset) = inside(addr, FLASH.base.get(), FLASH.size) {
+        } else if let Some(offset) = offset_in_range(addr, FLASH.base.get(), FLASH.size) {
             let now = Cycles::new(now.cast_signed());
             flash::write(&mut self.chip, offset & !1, value as u16, &mut self.memory, now);
         } else if Control::has(addr) {
             self.control.write(addr, value);
         } else if addr >= ROM_SIZE && !self.forgives {
-            return Err(unmapped(addr, Access::Write));
+            return Err(unmapped_trap(addr, Access::Write));
         }
         Ok(())
     }
@@ -131,12 +131,12 @@ impl<A: ExternalHardware> Hardware<A> {
     }
 }
 
-const fn inside(addr: u32, base: u32, size: u32) -> Option<u32> {
+const fn offset_in_range(addr: u32, base: u32, size: u32) -> Option<u32> {
     let offset = addr.wrapping_sub(base);
     if offset < size { Some(offset) } else { None }
 }
 
-const fn unmapped(addr: u32, access: Access) -> TrapKind {
+const fn unmapped_trap(addr: u32, access: Access) -> TrapKind {
     TrapKind::Unmapped { addr: GuestAddr::new(addr), access }
 }
 

@@ -23,7 +23,7 @@ impl Link {
     }
 
     /// Returns the number of times the firmware has polled for a byte.
-    pub(super) const fn looks(&self) -> u64 {
+    pub(super) const fn poll_count(&self) -> u64 {
         self.looks
     }
 
@@ -39,12 +39,12 @@ impl Link {
     }
 
     /// The next byte.
-    pub(super) fn take(&mut self) -> u16 {
+    pub(super) fn take_byte(&mut self) -> u16 {
         self.received.pop_front().map_or(0, u16::from)
     }
 
     /// Records a byte sent by the firmware.
-    pub(super) fn put(&mut self, byte: u8, now: u64) {
+    pub(super) fn record_sent(&mut self, byte: u8, now: u64) {
         self.sent.push((now, byte));
     }
 }

@@ -92,7 +92,7 @@ impl Load {
                 | OutputMode::DacServo
                 | OutputMode::ClosedLoopStepDir
                 | OutputMode::ClosedLoopMicrostep,
-            ) if is_enabled => self.follow(axis),
+            ) if is_enabled => self.follow_command(axis),
             Some(_) | None => self.steps = None,
         }
     }
@@ -108,7 +108,7 @@ impl Load {
     }
 
     /// Moves the load towards the command, limited by the number of counts that an encoder can follow.
-    fn follow(&mut self, axis: &Axis<'_>) {
+    fn follow_command(&mut self, axis: &Axis<'_>) {
         let rest = axis.double(Chan::DEST) - axis.double(Chan::POSITION);
         let step = if rest.abs() < NEGLIGIBLE { 0.0 } else { rest * (1.0 - libm::exp(-TIMEBASE / LAG)) };
         let reach = REACH * axis.single(Chan::INPUT_GAIN0).abs();

@@ -116,7 +116,7 @@ impl RomFunction {
     /// Calls the function: the processor is at its first packet, and afterwards at its return address, with no results
     /// in flight.
     pub(super) fn call(&self, state: &mut State) {
-        state.settle();
+        state.land_all();
         let [first, second, ..] = ARGUMENTS;
         let (result, is_pair) = match self.formula {
             Formula::Double(formula) => (canonical_f64(formula(double(state, first))).to_bits(), true),
@@ -125,15 +125,15 @@ impl RomFunction {
                 (canonical_f64(value).to_bits(), true)
             }
             Formula::Single(formula) => {
-                (canonical_f32(formula(single(state, first))).to_bits().into(), false)
+                (canonical_f32(formula(single_register(state, first))).to_bits().into(), false)
             }
             Formula::Singles(formula) => {
-                let value = formula(single(state, first), single(state, second));
+                let value = formula(single_register(state, first), single_register(state, second));
                 (canonical_f32(value).to_bits().into(), false)
             }
         };
         let back = state.reg(LINK);
-        changed().for_each(|reg| state.set_reg(reg, CHANGED));
+        clobbered_registers().for_each(|reg| state.set_reg(reg, CHANGED));
         state.set_reg(RESULT, result as u32);
         if is_pair {
             state.set_reg(RESULT.pair().high(), (result >> 32) as u32);
@@ -142,7 +142,7 @@ impl RomFunction {
     }
 }
 
-fn single(state: &State, reg: Reg) -> f32 {
+fn single_register(state: &State, reg: Reg) -> f32 {
     f32::from_bits(state.reg(reg))
 }
 
@@ -152,7 +152,7 @@ fn double(state: &State, reg: Reg) -> f64 {
 }
 
 /// The registers that a function may change: A0 to A9 and B0 to B9 except the return address, A16 to A31, B16 to B31.
-fn changed() -> impl Iterator<Item = Reg> {
+fn clobbered_registers() -> impl Iterator<Item = Reg> {
     let numbers = || (0..10).chain(16..32);
     numbers().flat_map(|number| [Reg::a(number), Reg::b(number)]).filter(|reg| *reg != LINK)
 }
@@ -200,7 +200,7 @@ mod tests {
             state.set_reg(ARGUMENTS[0], a.to_bits());
             state.set_reg(ARGUMENTS[1], b.to_bits());
             named(name).expect(name).call(&mut state);
-            assert_eq!(single(&state, RESULT), expect, "{name}");
+            assert_eq!(single_register(&state, RESULT), expect, "{name}");
         }
     }
 

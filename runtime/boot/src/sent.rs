@@ -43,7 +43,7 @@ pub(crate) struct SentLines {
 
 impl SentLines {
     /// From now on also keeps the bytes themselves.
-    pub(crate) fn tap(&mut self) {
+    pub(crate) fn keep_bytes(&mut self) {
         self.wire.get_or_insert_default();
     }
 
@@ -56,7 +56,7 @@ impl SentLines {
     pub(crate) fn take(&mut self, bytes: Vec<(u64, u8)>) -> Vec<SentLine> {
         // No byte follows what looks like the answer to an abort.
         if bytes.is_empty() && self.unfinished == ABORTED {
-            self.end(SentKind::Aborted, 0);
+            self.end_line(SentKind::Aborted, 0);
         }
         for (cycle, byte) in bytes {
             if let Some(wire) = &mut self.wire {
@@ -69,13 +69,13 @@ impl SentLines {
 
     fn byte(&mut self, cycle: u64, byte: u8) {
         if byte != b'\n' && self.unfinished == ABORTED {
-            self.end(SentKind::Aborted, 0);
+            self.end_line(SentKind::Aborted, 0);
         }
         if byte == b'\n' {
             match self.unfinished[..] {
-                [ESCAPE, 1..=7, ..] => self.end(SentKind::Request, 1),
-                [ESCAPE, ..] => self.end(SentKind::Console, 1),
-                _ => self.end(SentKind::Reply, 0),
+                [ESCAPE, 1..=7, ..] => self.end_line(SentKind::Request, 1),
+                [ESCAPE, ..] => self.end_line(SentKind::Console, 1),
+                _ => self.end_line(SentKind::Reply, 0),
             }
             return;
         }
@@ -86,7 +86,7 @@ impl SentLines {
     }
 
     /// Completes the line; `from` is the beginning of its text.
-    fn end(&mut self, kind: SentKind, from: usize) {
+    fn end_line(&mut self, kind: SentKind, from: usize) {
         let line = std::mem::take(&mut self.unfinished);
         let text = line.strip_suffix(b"\r").unwrap_or(&line);
         let text = if kind == SentKind::Aborted { &[] } else { text.get(from..).unwrap_or_default() };
@@ -101,7 +101,7 @@ mod tests {
     /// The lines of a stream that arrives in chunks of one size and then ends.
     fn lines(stream: &[u8], size: usize) -> Vec<(SentKind, String)> {
         let mut sent = SentLines::default();
-        sent.tap();
+        sent.keep_bytes();
         let pieces = stream.chunks(size).chain([&[][..]]);
         let lines: Vec<_> =
             pieces.flat_map(|piece| sent.take(piece.iter().map(|byte| (0, *byte)).collect())).collect();

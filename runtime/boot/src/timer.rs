@@ -29,7 +29,7 @@ struct Counter {
 }
 
 impl Counter {
-    fn at(&self, cycle: u64) -> u32 {
+    fn value_at(&self, cycle: u64) -> u32 {
         if !self.runs {
             return self.value;
         }
@@ -38,16 +38,16 @@ impl Counter {
 
     /// Keeps the count, but restarts from this cycle; the prescaler's partial count is lost.
     fn rebase(&mut self, cycle: u64) {
-        self.value = self.at(cycle);
+        self.value = self.value_at(cycle);
         self.since = cycle;
     }
 
     /// The first cycle at or after `now` in which it reaches `count`.
-    fn reaches(&self, count: u32, now: u64) -> Option<u64> {
+    fn next_match(&self, count: u32, now: u64) -> Option<u64> {
         if !self.runs {
             return None;
         }
-        let ahead = u64::from(count.wrapping_sub(self.at(now)));
+        let ahead = u64::from(count.wrapping_sub(self.value_at(now)));
         let begun = (now - self.since) / self.period * self.period + self.since;
         let wait = if ahead == 0 { 1 << 32 } else { ahead };
         Some(begun + wait * self.period)
@@ -96,19 +96,19 @@ impl Timer {
         let now = self.next;
         self.flag = true;
         self.compare = self.compare.wrapping_add(self.update);
-        self.aim(now);
+        self.schedule_match(now);
         self.is_enabled
     }
 
-    fn aim(&mut self, now: u64) {
+    fn schedule_match(&mut self, now: u64) {
         let counter = &self.counters[usize::from(self.uses_second)];
-        self.next = counter.reaches(self.compare, now).unwrap_or(u64::MAX);
+        self.next = counter.next_match(self.compare, now).unwrap_or(u64::MAX);
     }
 
     pub(super) fn read(&self, offset: u32, now: u64) -> u32 {
         for (first, counter) in COUNTERS.iter().zip(&self.counters) {
             if offset == first + COUNT {
-                return counter.at(now);
+                return counter.value_at(now);
             }
         }
         match offset {
@@ -144,7 +144,7 @@ impl Timer {
             _ => {}
         }
         if offset != FLAGS {
-            self.aim(now);
+            self.schedule_match(now);
         }
     }
 

@@ -55,7 +55,7 @@ const fn size(bytes: u32) -> AccessSize {
 }
 
 /// The register of an access; word accesses, and bytes outside a register's, have none.
-fn reached(offset: u32, bytes: u32) -> Option<u32> {
+fn register_of(offset: u32, bytes: u32) -> Option<u32> {
     register_at(offset % (REGISTER_COUNT * 4)).filter(|_| bytes <= 2)
 }
 
@@ -98,7 +98,7 @@ impl<A: ExternalHardware> Window<A> {
     }
 
     pub(super) fn read(&mut self, offset: u32, bytes: u32, now: u64) -> u32 {
-        let Some(register) = reached(offset, bytes) else { return 0 };
+        let Some(register) = register_of(offset, bytes) else { return 0 };
         if register == LINK_STATUS {
             let status = self.link.status();
             self.touches += u64::from(status != 0);
@@ -115,7 +115,7 @@ impl<A: ExternalHardware> Window<A> {
 
     fn value(&mut self, register: u32, size: AccessSize, now: u64) -> u16 {
         if register == LINK_DATA {
-            return self.link.take();
+            return self.link.take_byte();
         }
         if SNAP_BUS.contains(&register) {
             return 0;
@@ -133,11 +133,11 @@ impl<A: ExternalHardware> Window<A> {
     }
 
     pub(super) fn write(&mut self, offset: u32, bytes: u32, value: u32, now: u64) {
-        let Some(register) = reached(offset, bytes) else { return };
+        let Some(register) = register_of(offset, bytes) else { return };
         self.touches += 1;
         let value = if bytes == 1 { value & 0xFF } else { value } as u16;
         if register == LINK_STATUS {
-            return self.link.put(value as u8, now);
+            return self.link.record_sent(value as u8, now);
         }
         if let Some(external) = &mut self.external {
             external.write(register as usize, bytes == 1, value, now);

@@ -46,7 +46,7 @@ impl Changes {
     }
 
     /// Records the level of a bit.
-    pub fn note(&mut self, bit: Bit, level: bool, at: Cycles) {
+    pub fn record(&mut self, bit: Bit, level: bool, at: Cycles) {
         if self.is_on {
             self.list.push(BitChange { at, bit, level });
         }
@@ -71,7 +71,7 @@ impl Changes {
     }
 
     /// Finds the virtual bits that have changed; `word` returns their present words by index.
-    pub fn sweep(&mut self, word: impl Fn(usize) -> u32, at: Cycles) {
+    pub fn scan_virtual_bits(&mut self, word: impl Fn(usize) -> u32, at: Cycles) {
         if !self.is_on {
             return;
         }
@@ -119,7 +119,7 @@ mod tests {
         let mut changes = Changes::default();
         changes.switch_on(vec![0; 3]);
         for expect in [vec![(48, true), (63, true), (1057, true)], vec![]] {
-            changes.sweep(|index| [0x8001, 0, 2][index], Cycles::default());
+            changes.scan_virtual_bits(|index| [0x8001, 0, 2][index], Cycles::default());
             assert_eq!(told(&mut changes), expect);
         }
     }

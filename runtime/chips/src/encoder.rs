@@ -64,7 +64,7 @@ impl Encoders {
         if let Some(held) = self.counts.get_mut(channel) {
             *held = count;
             self.used |= 1 << channel;
-            self.show(channel, phases(count), pins, now);
+            self.drive_pins(channel, phases(count), pins, now);
         }
     }
 
@@ -83,7 +83,7 @@ impl Encoders {
 
     /// Sets the levels of a channel's pins; channels of SnapAmps have none.
     #[inline]
-    fn show(&self, channel: usize, levels: u64, pins: &mut Pins, now: Cycles) {
+    fn drive_pins(&self, channel: usize, levels: u64, pins: &mut Pins, now: Cycles) {
         if let Some(&first) = self.pins.get(channel) {
             pins.show_phases(first, levels, now);
         }
@@ -96,12 +96,12 @@ impl Encoders {
         }
         let channels = (0..ON_BOARD).filter(|channel| self.used >> channel & 1 != 0).collect::<Vec<_>>();
         for &channel in &channels {
-            self.show(channel, 0, pins, now);
+            self.drive_pins(channel, 0, pins, now);
         }
         self.filter = filter;
         self.pins = self::pins(filter);
         for &channel in &channels {
-            self.show(channel, phases(self.counts[channel]), pins, now);
+            self.drive_pins(channel, phases(self.counts[channel]), pins, now);
         }
     }
 

@@ -57,27 +57,27 @@ macro_rules! registers {
 // First number, count, read function, write function; `stored` and `store` only use the stored value.
 registers! {
     /// Filter and pins of the encoder inputs.
-    ENCODER_FILTER, 1 => stored, set_encoder_filter;
+    ENCODER_FILTER, 1 => read_stored, set_encoder_filter;
     /// Length, polarity and pins of the step pulses.
-    0x06, 1 => stored, set_step_pulse;
+    0x06, 1 => read_stored, set_step_pulse;
     /// Errors of the encoder inputs; writing clears them.
     0x08, 1 => encoder_errors, clear_encoder_errors;
     /// Known to programs; here they only store.
-    0x09, 5 => stored, store;
+    0x09, 5 => read_stored, store;
     /// Known to programs; here it only stores.
-    0x10, 1 => stored, store;
+    0x10, 1 => read_stored, store;
     /// Counters of the encoder inputs, eight bits each.
     0x20, 8 => encoder_counter, ignore;
     /// Known to programs; here it only stores.
-    0x28, 1 => stored, store;
+    0x28, 1 => read_stored, store;
     /// The prescaler of the PWM generators.
-    PRESCALE, 1 => stored, set_pwm;
+    PRESCALE, 1 => read_stored, set_pwm;
     /// The rate of a step generator, in four bytes; the last one makes it act.
-    STEP_RATE, 4 => stored, set_step_rate;
+    STEP_RATE, 4 => read_stored, set_step_rate;
     /// Positions of the step generators, low and high byte of each.
     0x40, 16 => step_position, store;
     /// Known to programs; here they only store.
-    0x80, 8 => stored, store;
+    0x80, 8 => read_stored, store;
     /// Outputs of Kanalog: opto outputs and drivers, general outputs.
     0x88, 2 => kanalog_outputs, set_kanalog_outputs;
     /// Conversions of Kanalog's analog inputs.
@@ -85,21 +85,21 @@ registers! {
     /// Inputs of Kanalog: general inputs and opto inputs.
     0x98, 1 => kanalog_inputs, ignore;
     /// Selects the function of the port's pins.
-    PORT_SELECT, 1 => stored, set_pwm;
+    PORT_SELECT, 1 => read_stored, set_pwm;
     /// Characters of the UART.
     0xc0, 1 => uart_data, send_to_uart;
     /// The UART's status when read, its divisor when written.
     0xc1, 1 => uart_status, set_uart_divisor;
     /// Values and switches of the PWM generators, one after another.
-    PWM, 2 * PWMS => stored, set_pwm;
+    PWM, 2 * PWMS => read_stored, set_pwm;
     /// Ones set latches.
-    0x100, GROUPS => stored, set_bits;
+    0x100, GROUPS => read_stored, set_bits;
     /// Zeros clear latches.
-    0x110, GROUPS => stored, clear_bits;
+    0x110, GROUPS => read_stored, clear_bits;
     /// Directions.
     0x120, GROUPS => directions, set_directions;
     /// Levels.
-    0x130, GROUPS => levels, store;
+    0x130, GROUPS => read_levels, store;
 }
 
 /// Values at power-up: step pulses of 32 clocks, encoder filter 7.
@@ -205,7 +205,7 @@ fn word(levels: impl Iterator<Item = bool>) -> u32 {
 }
 
 /// The part of a word that fits the access size.
-fn cut(word: u32, size: AccessSize) -> u32 {
+fn truncate_to_size(word: u32, size: AccessSize) -> u32 {
     if size == AccessSize::Byte { word & 0xff } else { word }
 }
 
@@ -252,18 +252,18 @@ impl Fpga {
                 (range.writes)(self, &mut chips, RegisterAccess { address, size, index }, value)
             }
             (number, None) => {
-                self.put(address, size, value);
+                self.write_stored(address, size, value);
                 Some(Notice::UnknownRegister(number))
             }
         }
     }
 
-    fn stored(&mut self, _: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
+    fn read_stored(&mut self, _: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
         self.at(access.address, access.size)
     }
 
     fn store(&mut self, _: &mut RegisterChips<'_>, access: RegisterAccess, value: u32) -> Option<Notice> {
-        self.put(access.address, access.size, value);
+        self.write_stored(access.address, access.size, value);
         None
     }
 
@@ -271,7 +271,7 @@ impl Fpga {
         None
     }
 
-    fn levels(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
+    fn read_levels(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
         chips.pins.level_group(access.index).into()
     }
 
@@ -364,7 +364,7 @@ impl Fpga {
         access: RegisterAccess,
         value: u32,
     ) -> Option<Notice> {
-        self.put(access.address, access.size, value);
+        self.write_stored(access.address, access.size, value);
         let filter = [ENCODER_FILTER * STRIDE + LANE, ENCODER_FILTER * STRIDE + LANE + 1];
         let filter = filter.map(|at| self.bytes.get(at as usize).copied().unwrap_or_default());
         chips.encoders.set_filter(u16::from_le_bytes(filter), chips.pins, chips.now);
@@ -377,7 +377,7 @@ impl Fpga {
         access: RegisterAccess,
         value: u32,
     ) -> Option<Notice> {
-        self.put(access.address, access.size, value);
+        self.write_stored(access.address, access.size, value);
         chips.stepgens.set_up(value as u8, chips.pins, chips.now);
         None
     }
@@ -388,7 +388,7 @@ impl Fpga {
         access: RegisterAccess,
         value: u32,
     ) -> Option<Notice> {
-        self.put(access.address, access.size, value);
+        self.write_stored(access.address, access.size, value);
         if access.index == 3 {
             let word: [u8; 4] = std::array::from_fn(|index| self.byte(STEP_RATE + index as u32));
             chips.stepgens.command(u32::from_le_bytes(word), chips.pins, chips.now);
@@ -399,9 +399,9 @@ impl Fpga {
     fn step_position(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
         let generator = (access.index / 2) as usize;
         if access.index % 2 == 1 {
-            return chips.stepgens.upper(generator).into();
+            return chips.stepgens.position_high_byte(generator).into();
         }
-        cut(chips.stepgens.read(generator, chips.now).into(), access.size)
+        truncate_to_size(chips.stepgens.read(generator, chips.now).into(), access.size)
     }
 
     fn set_pwm(
@@ -411,7 +411,7 @@ impl Fpga {
         value: u32,
     ) -> Option<Notice> {
         self.tell_pwm(chips.pins, chips.now);
-        self.put(access.address, access.size, value);
+        self.write_stored(access.address, access.size, value);
         self.drive_pwm_pins(chips.pins, chips.now);
         self.tell_pwm(chips.pins, chips.now);
         self.kstep.drive(self.moved_pwm(), chips.now);
@@ -420,7 +420,7 @@ impl Fpga {
 
     fn kanalog_outputs(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
         let outputs = reached_outputs(access.index, AccessSize::Half);
-        cut(word(outputs.map(|bit| chips.pins.written(bit))), access.size)
+        truncate_to_size(word(outputs.map(|bit| chips.pins.written(bit))), access.size)
     }
 
     fn set_kanalog_outputs(
@@ -436,11 +436,11 @@ impl Fpga {
     }
 
     fn kanalog_inputs(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
-        cut(word(bits(KANALOG_INPUTS, 16).map(|bit| chips.pins.input(bit))), access.size)
+        truncate_to_size(word(bits(KANALOG_INPUTS, 16).map(|bit| chips.pins.input(bit))), access.size)
     }
 
     fn kanalog_conversion(&mut self, chips: &mut RegisterChips<'_>, access: RegisterAccess) -> u32 {
-        cut(chips.kanalog.conversion(access.index as usize), access.size)
+        truncate_to_size(chips.kanalog.conversion(access.index as usize), access.size)
     }
 
     /// Connects the UART to its pins.
@@ -477,7 +477,7 @@ impl Fpga {
     }
 
     /// Stores at an address.
-    fn put(&mut self, address: GuestAddr, size: AccessSize, value: u32) {
+    fn write_stored(&mut self, address: GuestAddr, size: AccessSize, value: u32) {
         let start = address.get().wrapping_sub(FPGA.base.get()) as usize;
         if let Some(bytes) = self.bytes.get_mut(start..start + size.bytes() as usize) {
             bytes.copy_from_slice(&value.to_le_bytes()[..size.bytes() as usize]);

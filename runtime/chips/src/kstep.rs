@@ -24,7 +24,7 @@ pub struct AnalogOutput {
 }
 
 /// Returns the output of the coupler for a duty cycle in counts.
-fn coupled(counts: f64) -> f64 {
+fn coupler_output(counts: f64) -> f64 {
     let last = FIRST.len() - 1;
     let below = libm::floor(counts).max(0.0) as usize;
     if below < last {
@@ -40,7 +40,7 @@ impl AnalogOutput {
     pub fn drive(&mut self, duty: Option<f64>, now: Cycles) {
         self.level = self.level(now);
         self.at = now;
-        self.target = duty.map_or(0.0, |duty| coupled(duty * FULL));
+        self.target = duty.map_or(0.0, |duty| coupler_output(duty * FULL));
     }
 
     /// Returns the level at a given time, from 0 to 1.
@@ -62,7 +62,7 @@ mod tests {
     #[test]
     fn the_optocoupler_follows_the_curve_of_the_table() {
         for (counts, expect) in [(0.0, 0.001), (2.0, 0.044), (6.5, 0.0765), (240.0, 0.970), (255.0, 1.0)] {
-            assert!((coupled(counts) - expect).abs() < 1e-9, "{counts}: {}", coupled(counts));
+            assert!((coupler_output(counts) - expect).abs() < 1e-9, "{counts}: {}", coupler_output(counts));
         }
     }
 

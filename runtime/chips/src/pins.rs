@@ -92,21 +92,21 @@ impl Pins {
     /// Makes a pin of the board an output or an input.
     pub fn set_output(&mut self, bit: Bit, output: bool, now: Cycles) {
         let mask = 1 << bit.get();
-        self.change(now, |pins| pins.direction = with(pins.direction, mask, output));
+        self.change(now, |pins| pins.direction = with_bits(pins.direction, mask, output));
     }
 
     /// Sets the output latch of a pin of the board.
     pub fn set_latch(&mut self, bit: Bit, level: bool, now: Cycles) {
         let mask = 1 << bit.get();
-        self.change(now, |pins| pins.latch = with(pins.latch, mask, level));
+        self.change(now, |pins| pins.latch = with_bits(pins.latch, mask, level));
     }
 
     /// Makes a generator drive a pin of the board with this level, or returns the pin to its latch.
     pub fn generate(&mut self, bit: Bit, level: Option<bool>, now: Cycles) {
         let mask = 1 << bit.get();
         self.change(now, |pins| {
-            pins.generated = with(pins.generated, mask, level.is_some());
-            pins.generated_level = with(pins.generated_level, mask, level == Some(true));
+            pins.generated = with_bits(pins.generated, mask, level.is_some());
+            pins.generated_level = with_bits(pins.generated_level, mask, level == Some(true));
         });
     }
 
@@ -127,7 +127,7 @@ impl Pins {
     pub fn watch(&mut self, bit: Bit) {
         if bit.get() < PINS {
             let mask = 1 << bit.get();
-            self.shown = with(self.shown, mask, self.level(bit));
+            self.shown = with_bits(self.shown, mask, self.level(bit));
             self.watched |= mask;
         }
     }
@@ -148,11 +148,11 @@ impl Pins {
     }
 
     /// Reports the level of a watched pin at a given time.
-    pub fn show(&mut self, bit: Bit, level: bool, at: Cycles) {
+    pub fn report_level(&mut self, bit: Bit, level: bool, at: Cycles) {
         let mask = 1 << bit.get();
         if self.watched & mask != 0 && (self.shown & mask != 0) != level {
-            self.shown = with(self.shown, mask, level);
-            self.changes.note(bit, level, at);
+            self.shown = with_bits(self.shown, mask, level);
+            self.changes.record(bit, level, at);
         }
     }
 
@@ -167,7 +167,7 @@ impl Pins {
             let shown = mask & !(self.direction | self.generated);
             for pin in [first, first + 1].into_iter().filter(|pin| shown >> pin & 1 != 0) {
                 if let Some(bit) = Bit::new(pin.into()) {
-                    self.show(bit, self.inputs.contains(bit), at);
+                    self.report_level(bit, self.inputs.contains(bit), at);
                 }
             }
         }
@@ -198,7 +198,7 @@ impl Pins {
         }
         if self.inputs.contains(bit) != level {
             self.inputs.set(bit, level);
-            self.changes.note(bit, level, now);
+            self.changes.record(bit, level, now);
         }
     }
 
@@ -239,7 +239,7 @@ impl Pins {
     pub fn write(&mut self, bit: Bit, level: bool, now: Cycles) {
         if self.written.contains(bit) != level {
             self.written.set(bit, level);
-            self.changes.note(bit, level, now);
+            self.changes.record(bit, level, now);
         }
     }
 
@@ -277,7 +277,7 @@ impl Pins {
 }
 
 /// A word with the bits of `mask` set or cleared.
-fn with(word: u64, mask: u64, set: bool) -> u64 {
+fn with_bits(word: u64, mask: u64, set: bool) -> u64 {
     if set { word | mask } else { word & !mask }
 }
 
@@ -311,7 +311,7 @@ mod tests {
         for bit in bits {
             pins.generate(bit, Some(false), Cycles::new(0));
             for (at, level) in [(10, true), (20, true), (30, false), (40, true)] {
-                pins.show(bit, level, Cycles::new(at));
+                pins.report_level(bit, level, Cycles::new(at));
             }
             assert!(!pins.level(bit), "what a program reads");
             pins.generate(bit, None, Cycles::new(50));

@@ -110,7 +110,7 @@ impl Default for StepGenerators {
 }
 
 /// The maximum step rate in steps per second: a pulse is followed by a pause of its length.
-fn fastest(settings: u8) -> f64 {
+fn max_step_rate(settings: u8) -> f64 {
     FASTEST.min(CLOCK / 2.0 / f64::from((settings & LENGTH).max(1)))
 }
 
@@ -128,7 +128,7 @@ impl StepGenerators {
 
     /// Assigns the generator of an output channel to an axis; its pins become outputs.
     #[inline]
-    pub fn claim(&mut self, axis: AxisId, channel: i32, pins: &mut Pins, now: Cycles) {
+    pub fn assign(&mut self, axis: AxisId, channel: i32, pins: &mut Pins, now: Cycles) {
         if self.channels[axis.index()] != Some(channel) {
             self.release(axis, pins, now);
             self.channels[axis.index()] = Some(channel);
@@ -157,7 +157,7 @@ impl StepGenerators {
     }
 
     /// Returns whether a generator in use has its pulses on a pin.
-    pub fn makes(&self, bit: Bit) -> bool {
+    pub fn drives_pin(&self, bit: Bit) -> bool {
         let in_use = |generator: &usize| self.generators[*generator].owner.is_some();
         (0..self.generators.len()).filter(in_use).any(|generator| self.pins(generator).contains(&Some(bit)))
     }
@@ -193,7 +193,7 @@ impl StepGenerators {
             let Some(bit) = bit else { continue };
             pins.generate(bit, is_on.then_some(level), now);
             if is_on {
-                pins.show(bit, level, now);
+                pins.report_level(bit, level, now);
             }
         }
     }
@@ -263,11 +263,11 @@ impl StepGenerators {
             let at = start + Cycles::new(libm::round(part * Cycles::PER_TICK.get() as f64) as i64);
             if is_quadrature {
                 let now = (if last > first { passed + 1 } else { passed }) & 3;
-                pins.show(step, now == 1 || now == 2, at);
-                pins.show(direction, now >= 2, at);
+                pins.report_level(step, now == 1 || now == 2, at);
+                pins.report_level(direction, now >= 2, at);
             } else {
-                pins.show(step, !idle, at);
-                pins.show(step, idle, at + Cycles::new(length.min(spacing / 2)));
+                pins.report_level(step, !idle, at);
+                pins.report_level(step, idle, at + Cycles::new(length.min(spacing / 2)));
             }
         }
     }
@@ -286,7 +286,7 @@ impl StepGenerators {
             self.pins(generator).into_iter().flatten().for_each(|bit| pins.generate(bit, None, now));
         }
         self.settings = settings;
-        self.fastest = fastest(settings);
+        self.fastest = max_step_rate(settings);
         for &generator in &in_use {
             self.drive(generator, pins, now);
         }
@@ -367,7 +367,7 @@ impl StepGenerators {
     }
 
     /// The position in the format of its register: nine bits of steps, seven bits of fraction. Its upper byte is stored
-    /// for [`upper`](Self::upper).
+    /// for [`position_high_byte`](Self::position_high_byte).
     pub fn read(&mut self, generator: usize, now: Cycles) -> u16 {
         self.count(generator, now);
         let position = libm::floor(self.position(generator) * FRACTIONS) as i64 as u16;
@@ -378,7 +378,7 @@ impl StepGenerators {
     }
 
     /// The upper byte of the position at the last [read](Self::read), so that both bytes belong to the same time.
-    pub fn upper(&self, generator: usize) -> u8 {
+    pub fn position_high_byte(&self, generator: usize) -> u8 {
         self.generators.get(generator).map_or(0, |generator| generator.upper)
     }
 }
@@ -402,7 +402,7 @@ mod tests {
         pins.changes.switch_on(Vec::new());
         pins.watch(bit(8));
         pins.watch(bit(9));
-        generators.claim(AxisId::new(0).expect("0"), channel, &mut pins, tick(1));
+        generators.assign(AxisId::new(0).expect("0"), channel, &mut pins, tick(1));
         (generators, pins)
     }
 
@@ -483,7 +483,7 @@ mod tests {
         let [steps, ..] = generators.run(1.0, &mut pins, tick(2));
         assert_eq!(libm::round(steps), 260_417.0);
         let axis = AxisId::new(3).expect("3");
-        generators.claim(axis, 8 + 3, &mut pins, tick(3));
+        generators.assign(axis, 8 + 3, &mut pins, tick(3));
         for (settings, expect) in [(63, 132_275.0), (1, 2_500_000.0), (32, 260_417.0)] {
             generators.set_up(settings, &mut pins, tick(3));
             assert_eq!(libm::round(generators.steps_per_tick(axis) / 90e-6), expect, "{settings}");
@@ -504,7 +504,7 @@ mod tests {
         }
         let position = generators.read(2, Cycles::new(100 + 9600));
         generators.count(2, Cycles::new(1_000_000));
-        assert_eq!(u16::from(generators.upper(2)), position >> 8);
+        assert_eq!(u16::from(generators.position_high_byte(2)), position >> 8);
         generators.command(2 << NUMBER_SHIFT, &mut pins, Cycles::new(1_000_000));
         assert_eq!(generators.rate(2), 0.0);
     }

@@ -46,7 +46,7 @@ impl Uart {
     }
 
     /// Notes that the program polls for characters: from now on they arrive.
-    fn attend(&mut self, now: Cycles) {
+    fn note_poll(&mut self, now: Cycles) {
         if !std::mem::replace(&mut self.is_attended, true) {
             self.arrival = now + self.frame();
         }
@@ -58,7 +58,7 @@ impl Uart {
     }
 
     /// Puts characters on the line, the first one beginning at `now`.
-    pub fn arrive(&mut self, bytes: &[u8], now: Cycles) {
+    pub fn queue_bytes(&mut self, bytes: &[u8], now: Cycles) {
         self.advance(now);
         if self.line.is_empty() {
             self.arrival = now + self.frame();
@@ -96,7 +96,7 @@ impl Uart {
 
     /// The status register.
     pub fn status(&mut self, now: Cycles) -> u8 {
-        self.attend(now);
+        self.note_poll(now);
         self.advance(now);
         let ready = if self.received.is_empty() { 0 } else { DATA_READY };
         ready | if self.waiting.is_some() { TRANSMIT_FULL } else { 0 }
@@ -109,7 +109,7 @@ impl Uart {
 
     /// The next received character.
     pub fn receive(&mut self, now: Cycles) -> Option<u8> {
-        self.attend(now);
+        self.note_poll(now);
         self.advance(now);
         self.received.pop_front()
     }
@@ -171,7 +171,7 @@ mod tests {
     fn uart() -> Uart {
         let mut uart = Uart::default();
         uart.set_divisor(DIVISOR);
-        uart.attend(Cycles::default());
+        uart.note_poll(Cycles::default());
         uart
     }
 
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn characters_wait_until_the_program_looks_for_them() {
         let mut uart = Uart::default();
-        uart.arrive(b"abc", at(0));
+        uart.queue_bytes(b"abc", at(0));
         uart.set_divisor(DIVISOR);
         assert_eq!(uart.status(at(9)), 0);
         assert_eq!(uart.status(at(10)), DATA_READY);
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn characters_arrive_in_turn_and_the_third_overwrites_the_second() {
         let mut uart = uart();
-        uart.arrive(b"abc", at(0));
+        uart.queue_bytes(b"abc", at(0));
         assert_eq!(uart.status(at(1) - Cycles::new(1)), 0);
         assert_eq!(uart.status(at(1)), DATA_READY);
         assert_eq!((uart.read(at(3)), uart.read(at(3)), uart.read(at(3))), (b'a', b'c', 0));

@@ -35,7 +35,7 @@ pub(super) fn reciprocal_of_single(divisor: f32, iterations: u32) -> f32 {
 }
 
 /// The square root of a single as the board computes it; 0 for a number without one.
-pub(crate) fn root(square: f64) -> f64 {
+pub(crate) fn square_root(square: f64) -> f64 {
     let square = square as f32;
     if !square.is_normal() || square < 0.0 {
         return if square > 0.0 { f64::from(libm::sqrtf(square)) } else { 0.0 };
@@ -76,7 +76,7 @@ mod tests {
     fn roots_match_the_recorded_profiles() {
         // The first is exact, and the board misses it.
         for (square, root_of_it) in [(2_250_000.0, 1_500.000_122_070_312_5), (36e6, 6_000.000_488_281_25)] {
-            assert_eq!(root(square), root_of_it);
+            assert_eq!(square_root(square), root_of_it);
         }
     }
 
@@ -86,7 +86,7 @@ mod tests {
         assert!(divide(0.0, 0.0).is_nan());
         assert_eq!(divide(1.0, f64::INFINITY), 0.0);
         assert_eq!(
-            [root(0.0), root(-1.0), root(f64::NAN), root(f64::INFINITY)],
+            [square_root(0.0), square_root(-1.0), square_root(f64::NAN), square_root(f64::INFINITY)],
             [0.0, 0.0, 0.0, f64::INFINITY]
         );
     }

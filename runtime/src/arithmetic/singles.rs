@@ -7,7 +7,7 @@
 
 use std::f32::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LN_2, LN_10, LOG2_E, LOG10_E, PI};
 
-use super::division::{divide_singles, reciprocal_of_single, root};
+use super::division::{divide_singles, reciprocal_of_single, square_root};
 
 /// π in two parts, of which the first has few digits.
 const PI_HIGH: f32 = 3.140_625;
@@ -167,7 +167,7 @@ fn quotient(dividend: f32, divisor: f32) -> f32 {
 
 /// The square root of the processor; for a negative number, the root of its magnitude.
 pub(crate) fn sqrt(x: f32) -> f32 {
-    root(f64::from(flushed(x.abs()))) as f32
+    square_root(f64::from(flushed(x.abs()))) as f32
 }
 
 /// The numbers of an exponential function.
@@ -183,7 +183,7 @@ struct Exponential {
 }
 
 impl Exponential {
-    fn of(&self, x: f32) -> f32 {
+    fn evaluate(&self, x: f32) -> f32 {
         /// Powers of two, in steps of a quarter and of a sixteenth, with the board's digits.
         const QUARTERS: [f64; 4] = [1.0, 1.189_207_115, 1.414_213_562, 1.681_792_831];
         const SIXTEENTHS: [f64; 4] = [1.0, 1.044_273_782, 1.090_507_733, 1.138_788_635];
@@ -216,7 +216,7 @@ pub(crate) fn exp(x: f32) -> f32 {
         low: 1.996_636_5e-6,
         coefficients: [0.999_999_9, 0.499_999_97, 0.166_736_19],
     };
-    numbers.of(x)
+    numbers.evaluate(x)
 }
 
 pub(crate) fn exp2(x: f32) -> f32 {
@@ -227,7 +227,7 @@ pub(crate) fn exp2(x: f32) -> f32 {
         low: 0.0,
         coefficients: [0.693_147_1, 0.240_226_49, 0.055_527_262],
     };
-    numbers.of(x)
+    numbers.evaluate(x)
 }
 
 pub(crate) fn exp10(x: f32) -> f32 {
@@ -238,7 +238,7 @@ pub(crate) fn exp10(x: f32) -> f32 {
         low: 2.878_149_4e-7,
         coefficients: [2.302_585, 2.650_948_8, 2.035_527_5],
     };
-    numbers.of(x)
+    numbers.evaluate(x)
 }
 
 /// The logarithm to a base, given as the factor of the natural logarithm in single and in double precision.

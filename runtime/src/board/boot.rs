@@ -26,7 +26,7 @@ impl<E: Engine> Board<E> {
         if before == InitialMemory::Flashed {
             flash::restore(memory);
         }
-        let board = self.level().board();
+        let board = self.modelled_board().board();
         power_up::fill(self.machine.memory_mut(), board.version, before);
         power_up::fill_later(self.machine.memory_mut(), board);
         if self.machine.firmware().parts.servo.planner == Planner::Direct {
@@ -50,7 +50,7 @@ impl<E: Engine> Board<E> {
 
     /// Sets the board of memory: its map, the addresses of the firmware's variables, and its axes.
     pub(super) fn set_places(&mut self) {
-        let (places, board) = (self.level().places(), self.level().board());
+        let (places, board) = (self.modelled_board().places(), self.modelled_board().board());
         let (map, axes) = (board.map(), board.axes);
         let memory = self.machine.memory_mut();
         memory.set_map(map);
@@ -63,7 +63,7 @@ impl<E: Engine> Board<E> {
         let Some(text) = flash::text(self.memory(), thread) else { return };
         let length = text.end.get() - text.start.get();
         let bytes = self.memory().read_bytes(text.start, length).unwrap_or_default();
-        match code::bare(bytes, text.start, self.level()) {
+        match code::code_without_image(bytes, text.start, self.modelled_board()) {
             Ok(code) => {
                 let entry = self.memory().get(PERSIST.field(Persist::ENTRY_POINTS).element(thread.index()));
                 self.hand_over(thread, code, GuestAddr::new(entry));

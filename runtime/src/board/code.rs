@@ -26,7 +26,11 @@ pub(super) fn image(base: GuestAddr, length: u32, functions: Vec<u32>, board: &M
 ///
 /// # Errors
 /// The reason why it is not valid bytecode, if the real processor could not execute it either.
-pub(super) fn bare(bytes: &[u8], base: GuestAddr, board: &ModelledBoard) -> Result<Code, VerifyError> {
+pub(super) fn code_without_image(
+    bytes: &[u8],
+    base: GuestAddr,
+    board: &ModelledBoard,
+) -> Result<Code, VerifyError> {
     match program(bytes, base) {
         Err(VerifyError { kind: VerifyErrorKind::NotAProgram, .. }) if dsp::is_code(bytes) => {
             // The border between code and data is unknown, so nothing is protected.

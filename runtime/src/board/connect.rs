@@ -64,15 +64,15 @@ pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
     }
     pc.disk.latency = Cycles::new((machine.pc.disk_latency_s * Cycles::PER_SECOND.get() as f64) as i64);
     out.hints = machine.hints;
-    machine.unwanted_remarks.iter().for_each(|code| out.silence(code));
+    machine.unwanted_remarks.iter().for_each(|code| out.disable_remark(code));
     calls.plan_ticks = machine.cpu.plan_ticks;
     if machine.cpu.fresh_globals {
-        calls.globals.keep();
+        calls.globals.enable();
     }
 }
 
 /// Connects to the board everything that acts without a program: wires, devices and the events of the machine file.
-pub(crate) fn play(parts: &mut Parts, machine: &MachineFile, memory: &mut GuestMemory) {
+pub(crate) fn connect_surroundings(parts: &mut Parts, machine: &MachineFile, memory: &mut GuestMemory) {
     if machine.boards.has_kanalog || !machine.connected.analog.is_empty() {
         memory.set(KANALOG_PRESENT, 1);
     }

@@ -257,11 +257,11 @@ fn check_thread(text: &Section, spaces: &ProgramSpaces, wanted: ThreadId) -> Res
     }
     match ThreadId::all().find(|thread| spaces.start(*thread).get() == text.address) {
         Some(linked) => Err(LoadError::OtherThread { linked, wanted }),
-        None => Err(outside(text)),
+        None => Err(outside_error(text)),
     }
 }
 
-fn outside(section: &Section) -> LoadError {
+fn outside_error(section: &Section) -> LoadError {
     LoadError::OutsideProgramArea {
         name: section.name.to_string(),
         address: GuestAddr::new(section.address),
@@ -280,7 +280,7 @@ fn check_sections(
     for section in image.sections.iter().filter(|section| is_loaded(section)) {
         let (start, end) = (u64::from(section.address), u64::from(section.address) + section.size());
         if start < u64::from(spaces.start(thread).get()) || end > u64::from(spaces.limit) {
-            return Err(outside(section));
+            return Err(outside_error(section));
         }
         for other in ThreadId::all().filter(|other| holds(*other)) {
             let Range { start: first, end: behind } = spaces.space(other);

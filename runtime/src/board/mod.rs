@@ -170,12 +170,12 @@ impl<E: Engine> Board<E> {
             debug_assert!(stored.is_ok() && flash.len() == FLASH_SIZE, "flash has its size");
         }
         board.power_up(connected.boards.strict_flash);
-        let is_proven = board.level().board().is_proven;
+        let is_proven = board.modelled_board().board().is_proven;
         let (kernel, context) = board.machine.firmware_mut();
         if !is_proven {
             kernel.parts.out.remark(context.now, Message::KognaUnproven {});
         }
-        connect::play(&mut kernel.parts, connected, context.memory);
+        connect::connect_surroundings(&mut kernel.parts, connected, context.memory);
         board
     }
 
@@ -220,7 +220,7 @@ impl<E: Engine> Board<E> {
         }
         for request in self.machine.firmware_mut().0.parts.out.take_requests() {
             match request {
-                Request::Load(thread) => self.adopt(thread),
+                Request::Load(thread) => self.load_download(thread),
                 Request::Flash => self.save(),
                 Request::Reboot => self.reboot(),
                 Request::Run(thread, name) => self.run_offered(thread, &name),
@@ -299,7 +299,7 @@ impl<E: Engine> Board<E> {
 
     /// Guest memory, to change it from outside.
     pub fn memory_mut(&mut self) -> &mut GuestMemory {
-        self.machine.firmware_mut().0.parts.disturb();
+        self.machine.firmware_mut().0.parts.note_external_change();
         self.machine.memory_mut()
     }
 
@@ -316,7 +316,7 @@ impl<E: Engine> Board<E> {
 
     /// The machine, to load programs and to watch it.
     pub fn machine_mut(&mut self) -> &mut Machine<Kernel, E> {
-        self.machine.firmware_mut().0.parts.disturb();
+        self.machine.firmware_mut().0.parts.note_external_change();
         &mut self.machine
     }
 

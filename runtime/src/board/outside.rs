@@ -16,7 +16,7 @@ impl<E: Engine> Board<E> {
     pub fn receive(&mut self, bytes: &[u8]) {
         let (kernel, _) = self.machine.firmware_mut();
         kernel.parts.pc.usb.receive(bytes);
-        kernel.parts.disturb();
+        kernel.parts.note_external_change();
     }
 
     /// Returns whether the board has not yet taken all bytes from the PC.
@@ -69,9 +69,9 @@ impl<E: Engine> Board<E> {
     }
 
     /// Plays an operator for programs that wait on undriven inputs.
-    pub fn assist(&mut self) {
+    pub fn play_operator(&mut self) {
         let (kernel, context) = self.machine.firmware_mut();
-        kernel.parts.world.assist(context.now);
+        kernel.parts.world.play_operator(context.now);
     }
 
     /// Starts a recording; its records come as events.
@@ -85,14 +85,14 @@ impl<E: Engine> Board<E> {
     pub fn drive_input(&mut self, bit: Bit, level: bool) {
         let (kernel, context) = self.machine.firmware_mut();
         kernel.parts.lines(context.now).drive(bit, level);
-        kernel.parts.disturb();
+        kernel.parts.note_external_change();
     }
 
     /// Puts characters on the UART's line; they arrive one after another at its rate.
     pub fn send_to_uart(&mut self, bytes: &[u8]) {
         let (kernel, context) = self.machine.firmware_mut();
-        kernel.parts.io.uart.arrive(bytes, context.now);
-        kernel.parts.disturb();
+        kernel.parts.io.uart.queue_bytes(bytes, context.now);
+        kernel.parts.note_external_change();
     }
 
     /// The number of characters on the UART's line that have not arrived yet.

@@ -25,7 +25,7 @@ pub(crate) enum InitialMemory {
 
 impl InitialMemory {
     /// Returns whether a value is stored over these contents.
-    fn takes(self, stored: StoreCondition) -> bool {
+    fn is_overwritten(self, stored: StoreCondition) -> bool {
         self == Self::Zero || stored == StoreCondition::Always
     }
 }
@@ -79,7 +79,7 @@ fn start_variable(memory: &mut GuestMemory, variable: &FirmwareVariable, before:
     if variable.start == StartValue::Fields {
         return start_structures(memory, variable.address, variable.ty, before);
     }
-    if before.takes(variable.stored) {
+    if before.is_overwritten(variable.stored) {
         clear(memory, variable.address, variable.size, before);
         store(memory, variable.address, variable.start, variable.ty, 0);
     }
@@ -127,7 +127,7 @@ fn start_structure(
         let address = address.offset(*offset);
         if *start == StartValue::Fields {
             start_structures(memory, address, *ty, before);
-        } else if before.takes(*stored) {
+        } else if before.is_overwritten(*stored) {
             clear(memory, address, *size, before);
             store(memory, address, *start, *ty, index);
         }
@@ -142,7 +142,7 @@ fn store(memory: &mut GuestMemory, address: GuestAddr, start: StartValue, ty: CT
         StartValue::Int(value) => memory.poke(address, value),
         StartValue::Each(value) => {
             if let CType::Array(element, count) = ty.resolved() {
-                each(memory, address, *element, count, value);
+                fill_array(memory, address, *element, count, value);
             }
         }
         StartValue::Float(value) => memory.poke(address, value),
@@ -163,7 +163,7 @@ fn store(memory: &mut GuestMemory, address: GuestAddr, start: StartValue, ty: CT
 }
 
 /// Stores the same integer in every element of an array.
-fn each(memory: &mut GuestMemory, address: GuestAddr, element: CType, count: u32, value: i32) {
+fn fill_array(memory: &mut GuestMemory, address: GuestAddr, element: CType, count: u32, value: i32) {
     for index in 0..count {
         match element.resolved() {
             CType::Short | CType::UnsignedShort => memory.poke(address.offset(2 * index), value as i16),

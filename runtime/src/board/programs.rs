@@ -40,14 +40,14 @@ impl<E: Engine> Board<E> {
         image: &[u8],
         details: Arc<[CodeDetail]>,
     ) -> Result<(), LoadError> {
-        let prepared = prepare(image, thread, self.level(), |other| self.is_taken(other, thread))?;
+        let prepared = prepare(image, thread, self.modelled_board(), |other| self.is_taken(other, thread))?;
         if self.thread(thread).is_active() {
             let (kernel, context) = self.machine.firmware_mut();
             kernel.parts.out.remark(context.now, Message::ProgramReplaced { thread });
         }
         self.machine.unload_program(thread);
         self.machine.firmware_mut().0.parts.pc.downloads.forget(thread);
-        self.machine.firmware_mut().0.parts.calls.globals.forget(thread);
+        self.machine.firmware_mut().0.parts.calls.globals.remove(thread);
         for section in &prepared.sections {
             self.place(thread, section, &prepared.code);
         }
@@ -74,13 +74,13 @@ impl<E: Engine> Board<E> {
     }
 
     /// The firmware that the board models.
-    pub(super) fn level(&self) -> &ModelledBoard {
+    pub(super) fn modelled_board(&self) -> &ModelledBoard {
         &self.machine.firmware().parts.level
     }
 
     /// The spaces of the threads' programs.
     fn spaces(&self) -> ProgramSpaces {
-        self.level().board().programs()
+        self.modelled_board().board().programs()
     }
 
     /// Returns the facts about programs, for changes; snapshots keep the old ones.
@@ -105,7 +105,7 @@ impl<E: Engine> Board<E> {
         let placed = self.machine.memory_mut().poke_bytes(section.address, &bytes);
         debug_assert!(placed.is_ok(), "the loader checks that sections lie in memory");
         if !code.text().contains(&section.address) {
-            self.machine.firmware_mut().0.parts.calls.globals.note(thread, section.address, &bytes);
+            self.machine.firmware_mut().0.parts.calls.globals.record_section(thread, section.address, &bytes);
         }
     }
 
@@ -188,7 +188,8 @@ impl<E: Engine> Board<E> {
         image: Vec<u8>,
         details: Arc<[CodeDetail]>,
     ) -> Result<DebugInfo, LoadError> {
-        let debug = prepare(&image, thread, self.level(), |_| false)?.debug.with_details(details.clone());
+        let debug =
+            prepare(&image, thread, self.modelled_board(), |_| false)?.debug.with_details(details.clone());
         self.programs_mut().offered.insert((thread, name.into()), (image, details));
         Ok(debug)
     }
@@ -205,7 +206,7 @@ impl<E: Engine> Board<E> {
         let (kernel, context) = self.machine.firmware_mut();
         let out = &mut kernel.parts.out;
         match started {
-            Ok(()) => out.tell(context.now, EventKind::Loaded(thread, name.clone())),
+            Ok(()) => out.emit(context.now, EventKind::Loaded(thread, name.clone())),
             Err(error) => {
                 let name = name.to_string();
                 out.remark(context.now, Message::NotRun { name, thread, error });
@@ -214,7 +215,7 @@ impl<E: Engine> Board<E> {
     }
 
     /// Makes a program from the download into a thread that was started.
-    pub(super) fn adopt(&mut self, thread: ThreadId) {
+    pub(super) fn load_download(&mut self, thread: ThreadId) {
         let error = match self.take_download(thread) {
             Ok(true) => {
                 let started = self.machine.start(thread);
@@ -237,15 +238,15 @@ impl<E: Engine> Board<E> {
         let (kernel, _) = self.machine.firmware_mut();
         let ends = kernel.parts.pc.downloads.ends(thread);
         kernel.parts.pc.downloads.forget(thread);
-        let Some(code) = self.downloaded(thread, &ends)? else { return Ok(false) };
+        let Some(code) = self.downloaded_program(thread, &ends)? else { return Ok(false) };
         self.programs_mut().loaded[thread.index()] = None;
-        self.machine.firmware_mut().0.parts.calls.globals.forget(thread);
+        self.machine.firmware_mut().0.parts.calls.globals.remove(thread);
         self.hand_over(thread, code, entry);
         Ok(true)
     }
 
     /// The program whose text ends at one of several addresses; `None` if nothing was downloaded.
-    pub(super) fn downloaded(
+    pub(super) fn downloaded_program(
         &self,
         thread: ThreadId,
         ends: &[GuestAddr],
@@ -254,7 +255,7 @@ impl<E: Engine> Board<E> {
         let mut error = None;
         for end in ends {
             let text = self.memory().read_bytes(base, end.get() - base.get()).unwrap_or_default();
-            match code::bare(text, base, self.level()) {
+            match code::code_without_image(text, base, self.modelled_board()) {
                 Ok(code) => return Ok(Some(code)),
                 // The error of the longest range is the error of the text.
                 Err(wrong) => error = Some(wrong),
@@ -264,7 +265,7 @@ impl<E: Engine> Board<E> {
     }
 
     /// Stops the user threads.
-    pub fn kill(&mut self, threads: impl IntoIterator<Item = ThreadId>) {
+    pub fn stop_threads(&mut self, threads: impl IntoIterator<Item = ThreadId>) {
         for thread in threads {
             self.machine.threads_mut().pause(thread);
         }

@@ -179,16 +179,16 @@ impl<E: Engine> Board<E> {
     /// The threads that have not ended, and the event for which each waits.
     #[must_use]
     pub fn standing_threads(&self) -> Vec<UnfinishedThread> {
-        ThreadId::all().filter_map(|thread| self.standing(thread)).collect()
+        ThreadId::all().filter_map(|thread| self.unfinished_thread(thread)).collect()
     }
 
-    fn standing(&self, thread: ThreadId) -> Option<UnfinishedThread> {
+    fn unfinished_thread(&self, thread: ThreadId) -> Option<UnfinishedThread> {
         let state = match *self.thread(thread) {
             ThreadState::Active(Progress::Fresh | Progress::Going) => ThreadActivity::Computing,
             ThreadState::Active(Progress::Waiting(Wake::At(time))) => ThreadActivity::Until(time),
             ThreadState::Active(Progress::Waiting(Wake::NextSlice)) => ThreadActivity::Slice,
             ThreadState::Active(Progress::Waiting(Wake::Retry)) => {
-                let called = self.machine.firmware().parts.calls.waits.of(thread).called;
+                let called = self.machine.firmware().parts.calls.waits.wait_of(thread).called;
                 let (name, waits) =
                     called.map_or(("the firmware", None), |row| (row.name, row.attributes.waits));
                 ThreadActivity::Call(name, waits.unwrap_or("until the board ends the call"))
@@ -197,9 +197,9 @@ impl<E: Engine> Board<E> {
             ThreadState::Paused(_) => ThreadActivity::Paused,
             ThreadState::Empty | ThreadState::Ready | ThreadState::Faulted(_) => return None,
         };
-        let wait = self.machine.firmware().parts.calls.waits.of(thread);
+        let wait = self.machine.firmware().parts.calls.waits.wait_of(thread);
         let mut awaited = Vec::new();
-        for one in wait.calls.iter().filter_map(|call| self.awaited(call)) {
+        for one in wait.calls.iter().filter_map(|call| self.awaited_state(call)) {
             if !awaited.contains(&one) {
                 awaited.push(one);
             }
@@ -208,7 +208,7 @@ impl<E: Engine> Board<E> {
         Some(UnfinishedThread { thread, state, calls, since: wait.since, awaited })
     }
 
-    fn awaited(&self, call: &RepeatedCall) -> Option<AwaitedState> {
+    fn awaited_state(&self, call: &RepeatedCall) -> Option<AwaitedState> {
         match call.polls {
             PolledState::Bit => {
                 let bit = Bit::new(call.argument)?;
@@ -311,10 +311,12 @@ impl<E: Engine> Board<E> {
             drives_nothing.then_some(Reason::DrivesNothing),
             lacking.map(|(name, _)| Reason::NoLimits(name)),
             is_held.then(|| beyond_soft_limit(memory, axis).unwrap_or(Reason::FeedHold)),
-            (is_member && !memory.get(COORD_SYSTEM0).is_null()).then_some(match rate::starves(memory, 0.0) {
-                true => Reason::PathStarves,
-                false => Reason::OnPath,
-            }),
+            (is_member && !memory.get(COORD_SYSTEM0).is_null()).then_some(
+                match rate::is_starved(memory, 0.0) {
+                    true => Reason::PathStarves,
+                    false => Reason::OnPath,
+                },
+            ),
             limit_switch(),
         ]
         .into_iter()

@@ -28,7 +28,7 @@ use crate::io::bits::bit_state;
 use crate::machine::{COUNTS_PER_TICK, Channel, Drive};
 use crate::out::{Event, EventKind, Message, Remark, Request, Speaker};
 use crate::pc::{Pc, host};
-use crate::servo::{driven, input, plan, wired};
+use crate::servo::{input, load_drive, plan, wired};
 use crate::views::{AxisView, TypedAccess};
 use crate::world::stimulus::{InputReader, Stimulus};
 use crate::world::{Moment, trace};
@@ -146,7 +146,7 @@ impl Surroundings {
                 memory.set(first, 1);
             }
         }
-        connect::play(&mut self.parts, machine, memory);
+        connect::connect_surroundings(&mut self.parts, machine, memory);
         if !stimulus.is_empty() {
             let (world, mut access) = self.parts.access(Cycles::default());
             world.play(stimulus, &mut access, memory);
@@ -169,7 +169,7 @@ impl Surroundings {
 
     /// Puts characters on the line to the serial port; they arrive one after another at its rate.
     pub fn send_to_uart(&mut self, bytes: &[u8], now: Cycles) {
-        self.parts.io.uart.arrive(bytes, now);
+        self.parts.io.uart.queue_bytes(bytes, now);
     }
 
     /// The number of characters on the line to the serial port that have not arrived yet.
@@ -181,7 +181,7 @@ impl Surroundings {
     /// Queues characters for the serial port, and sets whether each character that the port sends is reported.
     pub fn connect_uart(&mut self, waiting: &[u8], is_heard: bool) {
         if !waiting.is_empty() {
-            self.parts.io.uart.arrive(waiting, Cycles::default());
+            self.parts.io.uart.queue_bytes(waiting, Cycles::default());
         }
         if is_heard {
             let Parts { world, io, .. } = &mut self.parts;
@@ -190,17 +190,17 @@ impl Surroundings {
     }
 
     /// Plays an operator, from power-up on, for programs that wait on undriven inputs; their calls are reported to
-    /// [`called`](Self::called).
-    pub fn assist(&mut self) {
-        self.parts.world.assist(Cycles::default());
+    /// [`note_call`](Self::note_call).
+    pub fn play_operator(&mut self) {
+        self.parts.world.play_operator(Cycles::default());
     }
 
     /// Notes that a program calls the firmware, in order to find out whether it only waits, and for which event.
-    pub fn called(&mut self, call: ProgramCall, memory: &GuestMemory, now: Cycles) {
+    pub fn note_call(&mut self, call: ProgramCall, memory: &GuestMemory, now: Cycles) {
         let Parts { world, io, .. } = &mut self.parts;
         let Some(assist) = &mut world.assist else { return };
         let polls = row_named(call.function).and_then(|row| row.attributes.polls);
-        assist.called(polls.is_some(), now);
+        assist.note_call(polls.is_some(), now);
         if polls == Some(PolledState::Bit)
             && let Some(bit) = Bit::new(call.argument)
             && bit_state(io, memory, bit).1
@@ -214,7 +214,7 @@ impl Surroundings {
         let ExecutedPacket { thread, at: address, start, cycles, text } = packet;
         let Parts { world, out, .. } = &mut self.parts;
         if world.records_packets(thread) {
-            out.tell(start, EventKind::Trace(trace::Record::Packet { thread, address, cycles, text }));
+            out.emit(start, EventKind::Trace(trace::Record::Packet { thread, address, cycles, text }));
         }
     }
 
@@ -249,7 +249,7 @@ impl Surroundings {
     }
 
     /// Takes a console line sent by the firmware; the PC handles requests for files itself.
-    pub fn hear(&mut self, line: Vec<u8>, now: Cycles) {
+    pub fn receive_line(&mut self, line: Vec<u8>, now: Cycles) {
         self.parts.send_line(line, now);
     }
 
@@ -258,7 +258,7 @@ impl Surroundings {
         let now = instant.now;
         self.parts.clock.tick_start = now;
         self.conversions = std::array::from_fn(|channel| self.parts.io.kanalog.conversion(channel) as u16);
-        let active = active(instant.memory, self.active);
+        let active = active_threads(instant.memory, self.active);
         self.follow_threads(active);
         self.parts.io.stepgens.follow(instant.steps, &mut self.parts.io.pins, now);
         let moment = self.slice(instant);
@@ -276,9 +276,9 @@ impl Surroundings {
         machine.drive(io, out, context.memory, now);
         self.move_loads(instant);
         self.parts.machine.signal(&mut self.parts.io, now);
-        self.show(instant);
+        self.drive_inputs(instant);
         self.sample(instant);
-        self.ask(active);
+        self.store_requests(active);
     }
 
     /// The owner of the slice that ends with a tick: the thread to which the previous interrupt has given the
@@ -293,7 +293,7 @@ impl Surroundings {
         if world.records_changes() && start >= Cycles::default() {
             // The thread's registers, which the firmware saves, are not located here.
             let slice = trace::Record::Slice { thread, end: instant.now, interrupted_at: None };
-            out.tell(start, EventKind::Trace(slice));
+            out.emit(start, EventKind::Trace(slice));
         }
         Moment { turn: SliceOwner::User(thread), slice_start: start + INTERRUPT }
     }
@@ -354,7 +354,7 @@ impl Surroundings {
                 let chan = AxisView::of(instant.memory, axis);
                 let plant = &mut self.parts.machine.loads[axis];
                 self.stepped[at] += made;
-                plant.drive = driven(&chan, self.stepped[at]);
+                plant.drive = load_drive(&chan, self.stepped[at]);
                 if let (Drive::Steps(command), false) = (plant.drive, was_enabled || made != 0.0) {
                     plant.refer_to(command);
                 }
@@ -371,7 +371,7 @@ impl Surroundings {
     }
 
     /// Shows the firmware the counts of encoders and the levels of switches.
-    fn show(&mut self, instant: &mut Instant<'_>) {
+    fn drive_inputs(&mut self, instant: &mut Instant<'_>) {
         for axis in instant.memory.axes().iter() {
             let chan = AxisView::of(instant.memory, axis);
             let position = chan.get(Chan::POSITION);
@@ -418,7 +418,7 @@ impl Surroundings {
     }
 
     /// Stores the requests of the stimulus to threads and to the PC.
-    fn ask(&mut self, active: ThreadSet) {
+    fn store_requests(&mut self, active: ThreadSet) {
         for thread in ThreadId::all() {
             match (active.contains(thread), self.threads.state(thread).is_active()) {
                 (false, true) => self.command(&format!("Execute{thread}")),
@@ -469,7 +469,7 @@ impl Surroundings {
 
     /// Ends the run: the final expectations of the stimulus are checked.
     pub fn finish(&mut self, memory: &mut GuestMemory, now: Cycles) {
-        self.follow_threads(active(memory, self.active));
+        self.follow_threads(active_threads(memory, self.active));
         let context = TickContext { memory, threads: &mut self.threads, tick: Ticks::new(0), now };
         let (world, mut access) = self.parts.access(now);
         world.finish(&mut access, &context);
@@ -477,7 +477,7 @@ impl Surroundings {
 }
 
 /// The threads that are active.
-fn active(memory: &GuestMemory, at: GuestAddr) -> ThreadSet {
+fn active_threads(memory: &GuestMemory, at: GuestAddr) -> ThreadSet {
     let active: u32 = memory.peek(at);
     ThreadId::all().filter(|thread| active >> thread.get() & 1 != 0).collect()
 }

@@ -92,24 +92,24 @@ impl<'t> LineReader<'t> {
         Self { text, column }
     }
 
-    fn rest(&self) -> &'t [u8] {
+    fn remaining(&self) -> &'t [u8] {
         self.text.get(self.column..).unwrap_or_default()
     }
 
     /// Returns the reader with leading spaces skipped.
     fn behind_spaces(&self) -> Self {
-        self.behind(b" ")
+        self.after_prefix(b" ")
     }
 
-    fn behind(&self, skipped: &[u8]) -> Self {
-        let spaces = self.rest().iter().take_while(|byte| skipped.contains(byte)).count();
+    fn after_prefix(&self, skipped: &[u8]) -> Self {
+        let spaces = self.remaining().iter().take_while(|byte| skipped.contains(byte)).count();
         Self { column: self.column + spaces, ..*self }
     }
 
     /// Takes the characters of a number, converted by `read`, if there are any; returns its value.
     fn number<V>(&mut self, read: impl FnOnce(&[u8]) -> (V, usize)) -> Result<V, Mistake> {
-        let mut next = self.behind(b" \t");
-        let (value, used) = read(next.rest());
+        let mut next = self.after_prefix(b" \t");
+        let (value, used) = read(next.remaining());
         if used == 0 {
             return Err(self.mistake(Message::Number));
         }
@@ -136,7 +136,7 @@ impl<'t> LineReader<'t> {
         self.number(float_value)
     }
 
-    fn limited(&mut self, lo: f32, hi: f32) -> Result<f64, Mistake> {
+    fn limited_number(&mut self, lo: f32, hi: f32) -> Result<f64, Mistake> {
         let value = self.real()?;
         if !(f64::from(lo)..=f64::from(hi)).contains(&value) {
             let limits = [lo, hi].map(super::numbers::limit);
@@ -148,13 +148,13 @@ impl<'t> LineReader<'t> {
     /// A hexadecimal number, low 32 bits, and the character after it.
     pub(super) fn hex(&mut self) -> Result<u32, Mistake> {
         let mut next = self.behind_spaces();
-        let is_negative = next.rest().first() == Some(&b'-');
-        next.column += usize::from(is_negative || next.rest().first() == Some(&b'+'));
-        let digits = next.rest().iter().take_while(|byte| byte.is_ascii_hexdigit()).count();
+        let is_negative = next.remaining().first() == Some(&b'-');
+        next.column += usize::from(is_negative || next.remaining().first() == Some(&b'+'));
+        let digits = next.remaining().iter().take_while(|byte| byte.is_ascii_hexdigit()).count();
         if digits == 0 {
             return Err(self.mistake(Message::Hex));
         }
-        let value = next.rest()[..digits]
+        let value = next.remaining()[..digits]
             .iter()
             .fold(0_u32, |sum, &byte| (sum << 4) | char::from(byte).to_digit(16).unwrap_or(0));
         next.column = (next.column + digits + 1).min(next.text.len());
@@ -168,9 +168,9 @@ impl<'t> LineReader<'t> {
         u8::try_from(value).map_err(|_| self.mistake(Message::Byte))
     }
 
-    fn equals(&mut self) -> Result<(), Mistake> {
+    fn expect_equals(&mut self) -> Result<(), Mistake> {
         let mut next = self.behind_spaces();
-        if next.rest().first() != Some(&b'=') {
+        if next.remaining().first() != Some(&b'=') {
             return Err(next.mistake(Message::Equals));
         }
         next.column += 1;
@@ -179,7 +179,7 @@ impl<'t> LineReader<'t> {
     }
 
     fn is_at_end(&self) -> bool {
-        self.behind_spaces().rest().is_empty()
+        self.behind_spaces().remaining().is_empty()
     }
 }
 
@@ -216,22 +216,22 @@ impl Values {
                 }
                 Argument::Integer(lo, hi) => ArgumentValue::Integer(reader.integer(lo, hi)?),
                 Argument::Real => ArgumentValue::Real(reader.real()?),
-                Argument::Limited(lo, hi) => ArgumentValue::Real(reader.limited(lo, hi)?),
+                Argument::Limited(lo, hi) => ArgumentValue::Real(reader.limited_number(lo, hi)?),
                 Argument::OptionalHex if reader.is_at_end() => break,
                 Argument::Hex | Argument::OptionalHex => ArgumentValue::Word(reader.hex()?),
                 // A blank at the end is already too much.
-                Argument::Assign | Argument::End if reader.rest().is_empty() => {
+                Argument::Assign | Argument::End if reader.remaining().is_empty() => {
                     read.is_question = true;
                     break;
                 }
                 Argument::End => break,
                 Argument::Equals | Argument::Assign => {
-                    reader.equals()?;
+                    reader.expect_equals()?;
                     continue;
                 }
                 Argument::OptionalEquals => {
                     // It may be missing.
-                    let _ = reader.equals();
+                    let _ = reader.expect_equals();
                     continue;
                 }
             };

@@ -5,8 +5,8 @@ use kmotiondef::{AxisId, Field};
 use vm::memory::GuestMemory;
 
 use super::arguments::Values;
-use super::motion::planned;
-use super::numbers::{plain, precise};
+use super::motion::planned_answer;
+use super::numbers::{format_plain, format_precise};
 use super::session::{Answer, Session};
 use crate::firmware::motion;
 use crate::views::TypedAccess;
@@ -32,7 +32,7 @@ pub(super) fn word(session: &mut Session<'_, '_>, values: &Values, field: Field<
 /// Reports or sets a single.
 pub(super) fn single(session: &mut Session<'_, '_>, values: &Values, field: Field<f32>) -> Answer {
     if values.is_question() {
-        return plain(session.memory().axis(values.axis(), field).into()).into();
+        return format_plain(session.memory().axis(values.axis(), field).into()).into();
     }
     session.memory().set_axis(values.axis(), field, values.single(1));
     Answer::Nothing
@@ -42,7 +42,7 @@ pub(super) fn single(session: &mut Session<'_, '_>, values: &Values, field: Fiel
 pub(super) fn double(session: &mut Session<'_, '_>, values: &Values, field: Field<f64>) -> Answer {
     if values.is_question() {
         let dialect = session.parts.level.behaviour().text;
-        return precise(dialect, session.memory().axis(values.axis(), field)).into();
+        return format_precise(dialect, session.memory().axis(values.axis(), field)).into();
     }
     session.memory().set_axis(values.axis(), field, values.real(1));
     Answer::Nothing
@@ -53,7 +53,7 @@ pub(super) fn filter(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let filter = Chan::IIR.element(values.count(1));
     let fields = [Iir::A1, Iir::A2, Iir::B0, Iir::B1, Iir::B2].map(|field| filter.field(field));
     if values.is_question() {
-        let numbers = fields.map(|field| plain(session.memory().axis(values.axis(), field).into()));
+        let numbers = fields.map(|field| format_plain(session.memory().axis(values.axis(), field).into()));
         return numbers.join(" ").into();
     }
     for (index, field) in fields.into_iter().enumerate() {
@@ -71,12 +71,12 @@ pub(super) fn enabled(session: &mut Session<'_, '_>, values: &Values) -> Answer 
 }
 
 pub(super) fn enable(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    planned(session.call(|parts, caller| motion::enable_axis(parts, caller, values.integer(0))))
+    planned_answer(session.call(|parts, caller| motion::enable_axis(parts, caller, values.integer(0))))
 }
 
 pub(super) fn enable_dest(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, dest) = (values.integer(0), values.real(1));
-    planned(session.call(|parts, caller| motion::enable_axis_dest(parts, caller, axis, dest)))
+    planned_answer(session.call(|parts, caller| motion::enable_axis_dest(parts, caller, axis, dest)))
 }
 
 pub(super) fn disable(session: &mut Session<'_, '_>, values: &Values) -> Answer {

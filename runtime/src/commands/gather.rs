@@ -46,7 +46,7 @@ pub(crate) fn advance(running: &mut Option<Experiment>, parts: &mut Parts, conte
         let distance = if experiment.done == 0 { experiment.amount } else { -experiment.amount };
         go(&mut parts.servo, context, experiment.axis, distance, experiment.jumps);
         experiment.done += 1;
-        parts.disturb();
+        parts.note_external_change();
     }
 }
 

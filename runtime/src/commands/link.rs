@@ -48,7 +48,7 @@ impl Link {
     }
 
     /// Puts a line into the buffer: a 0 ends each of its commands.
-    fn begin(&mut self, line: &[u8]) {
+    fn load_line(&mut self, line: &[u8]) {
         let mut start = 0;
         for part in line.split(|&byte| byte == b';') {
             self.parts.push_back(start..start + part.len());
@@ -61,7 +61,7 @@ impl Link {
     }
 
     /// The text of the buffer from an offset on.
-    fn rest(&self, from: usize) -> Vec<u8> {
+    fn text_from(&self, from: usize) -> Vec<u8> {
         let rest = self.buffer.get(from..).unwrap_or_default();
         rest.iter().copied().take_while(|&byte| byte != 0).collect()
     }
@@ -127,7 +127,7 @@ pub(super) fn slice(
 ) {
     let mut out = Vec::new();
     if let Some(line) = link.take_line(side(&mut parts.pc), &mut out) {
-        parts.disturb();
+        parts.note_external_change();
         Turn { parts, experiment, context, link, side, out: &mut out }.line(&line);
     }
     let to_uart = serial::has_commands(parts, context.memory);
@@ -136,7 +136,7 @@ pub(super) fn slice(
             let bytes = output.into_event().on_wire().unwrap_or_default();
             serial::write(parts, context.memory, &bytes);
         } else {
-            parts.out.tell(context.now, output.into_event());
+            parts.out.emit(context.now, output.into_event());
         }
     }
 }
@@ -158,13 +158,13 @@ impl Turn<'_, '_> {
         if let Some(data) = self.link.data.take() {
             self.data(data, &line);
         } else {
-            self.link.begin(&line);
+            self.link.load_line(&line);
         }
         while self.link.data.is_none() {
             let Some(part) = self.link.parts.pop_front() else { break };
             if !part.is_empty() {
                 let text = self.link.buffer.get(part.clone()).unwrap_or_default().to_vec();
-                let rest = self.link.rest(part.start + ECHO);
+                let rest = self.link.text_from(part.start + ECHO);
                 self.part(&text, &rest);
             }
         }
@@ -184,7 +184,7 @@ impl Turn<'_, '_> {
                 data.finish(&mut self.parts.pc.downloads, self.context);
             }
             Ok(()) => self.link.data = Some(data),
-            Err(mistake) => self.mistake(line, &mistake),
+            Err(mistake) => self.print_mistake(line, &mistake),
         }
     }
 
@@ -195,11 +195,11 @@ impl Turn<'_, '_> {
             if let Some(message) = absent::explain(part, self.parts.level.board()) {
                 self.parts.out.remark(self.context.now, message);
             }
-            return self.mistake(part, &Mistake { column: 0, message: MistakeText::InvalidCommand });
+            return self.print_mistake(part, &Mistake { column: 0, message: MistakeText::InvalidCommand });
         };
         match Values::read(command.arguments, set, &mut LineReader::new(part, length)) {
             Ok(values) => self.execute(command, &values, rest),
-            Err(mistake) => self.mistake(part, &mistake),
+            Err(mistake) => self.print_mistake(part, &mistake),
         }
     }
 
@@ -250,7 +250,7 @@ impl Turn<'_, '_> {
     }
 
     /// Prints the three console lines of a mistake; the rest of the line is dropped.
-    fn mistake(&mut self, text: &[u8], mistake: &Mistake) {
+    fn print_mistake(&mut self, text: &[u8], mistake: &Mistake) {
         let caret = [" ".repeat(mistake.column).into_bytes(), b"^".to_vec()].concat();
         let message = mistake.message.text().into_bytes();
         let lines = if mistake.message == MistakeText::Equals {

@@ -11,61 +11,63 @@ use crate::firmware::motion;
 use crate::views::TypedAccess;
 
 /// A motion call from the primary thread, which plans at once.
-pub(super) fn planned(outcome: Outcome<()>) -> Answer {
+pub(super) fn planned_answer(outcome: Outcome<()>) -> Answer {
     debug_assert_eq!(outcome, Outcome::Done(()), "only user threads wait for a slice to plan in");
     Answer::Nothing
 }
 
 pub(super) fn move_to(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, x) = (values.integer(0), values.real(1));
-    planned(session.call(|parts, caller| motion::move_to(parts, caller, axis, x)))
+    planned_answer(session.call(|parts, caller| motion::move_to(parts, caller, axis, x)))
 }
 
 pub(super) fn move_rel(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, dx) = (values.integer(0), values.real(1));
-    planned(session.call(|parts, caller| motion::move_rel(parts, caller, axis, dx)))
+    planned_answer(session.call(|parts, caller| motion::move_rel(parts, caller, axis, dx)))
 }
 
 pub(super) fn move_at_vel(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, x, velocity) = (values.integer(0), values.real(1), values.single(2));
-    planned(session.call(|parts, caller| motion::move_at_vel(parts, caller, axis, x, velocity)))
+    planned_answer(session.call(|parts, caller| motion::move_at_vel(parts, caller, axis, x, velocity)))
 }
 
 pub(super) fn move_rel_at_vel(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, dx, velocity) = (values.integer(0), values.real(1), values.single(2));
-    planned(session.call(|parts, caller| motion::move_rel_at_vel(parts, caller, axis, dx, velocity)))
+    planned_answer(session.call(|parts, caller| motion::move_rel_at_vel(parts, caller, axis, dx, velocity)))
 }
 
 pub(super) fn move_exp(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, x, tau) = (values.integer(0), values.real(1), values.real(2));
-    planned(session.call(|parts, caller| motion::move_exp(parts, caller, axis, x, tau)))
+    planned_answer(session.call(|parts, caller| motion::move_exp(parts, caller, axis, x, tau)))
 }
 
 pub(super) fn move_xyzabc(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let [x, y, z, a, b, c] = std::array::from_fn(|index| values.real(index));
-    planned(session.call(|parts, caller| motion::move_xyzabc(parts, caller, x, y, z, a, b, c)))
+    planned_answer(session.call(|parts, caller| motion::move_xyzabc(parts, caller, x, y, z, a, b, c)))
 }
 
 pub(super) fn jog(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, velocity) = (values.integer(0), values.real(1));
-    planned(session.call(|parts, caller| motion::jog(parts, caller, axis, velocity)))
+    planned_answer(session.call(|parts, caller| motion::jog(parts, caller, axis, velocity)))
 }
 
 pub(super) fn move_at_vel_accel(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, x, velocity, accel) = (values.integer(0), values.real(1), values.single(2), values.single(3));
-    planned(session.call(|parts, caller| motion::move_at_vel_accel(parts, caller, axis, x, velocity, accel)))
+    planned_answer(
+        session.call(|parts, caller| motion::move_at_vel_accel(parts, caller, axis, x, velocity, accel)),
+    )
 }
 
 pub(super) fn move_rel_at_vel_accel(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, dx, velocity, accel) = (values.integer(0), values.real(1), values.single(2), values.single(3));
-    planned(
+    planned_answer(
         session.call(|parts, caller| motion::move_rel_at_vel_accel(parts, caller, axis, dx, velocity, accel)),
     )
 }
 
 pub(super) fn jog_at_accel(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, velocity, accel) = (values.integer(0), values.real(1), values.real(2));
-    planned(session.call(|parts, caller| motion::jog_at_accel(parts, caller, axis, velocity, accel)))
+    planned_answer(session.call(|parts, caller| motion::jog_at_accel(parts, caller, axis, velocity, accel)))
 }
 
 /// Of each axis the two words of its destination, the lower one first, and its speed.

@@ -35,23 +35,24 @@ fn formatted_in(dialect: Dialect, pattern: &str, value: f64) -> String {
 }
 
 /// `%f`.
-pub(super) fn fixed(value: f64) -> String {
+pub(super) fn format_fixed(value: f64) -> String {
     formatted("%f", value)
 }
 
 /// A limit of a real, by `%f`. The digits of 1e12 are as recorded: the board's own are wrong after the 16th.
 pub(super) fn limit(value: f32) -> String {
-    let text = if value.abs() == 1e12 { "999999995904.000163".to_owned() } else { fixed(value.abs().into()) };
+    let text =
+        if value.abs() == 1e12 { "999999995904.000163".to_owned() } else { format_fixed(value.abs().into()) };
     if value < 0.0 { format!("-{text}") } else { text }
 }
 
 /// Formats with `%f`, or with `%g` for magnitudes above 1e8.
-pub(super) fn plain(value: f64) -> String {
+pub(super) fn format_plain(value: f64) -> String {
     formatted(if value.abs() > 1e8 { "%g" } else { "%f" }, value)
 }
 
 /// `%.13g`, for positions and related values.
-pub(super) fn precise(dialect: Dialect, value: f64) -> String {
+pub(super) fn format_precise(dialect: Dialect, value: f64) -> String {
     formatted_in(dialect, "%.13g", value)
 }
 
@@ -67,11 +68,11 @@ mod tests {
     #[test]
     fn numbers_are_shown_as_on_the_board() {
         for (text, expect) in [
-            (plain(1000.0), "1000.000000"),
-            (plain(1.5e9), "1.5e+09"),
-            (plain(-1e30), "-1e+30"),
-            (precise(Dialect::Firmware4, 123_456_789.123), "123456789.123"),
-            (precise(Dialect::Firmware4, 1e20), "1e+20"),
+            (format_plain(1000.0), "1000.000000"),
+            (format_plain(1.5e9), "1.5e+09"),
+            (format_plain(-1e30), "-1e+30"),
+            (format_precise(Dialect::Firmware4, 123_456_789.123), "123456789.123"),
+            (format_precise(Dialect::Firmware4, 1e20), "1e+20"),
             (time(-0.001), "-0.001000"),
             (limit(-1e12), "-999999995904.000163"),
             (limit(255.0), "255.000000"),

@@ -8,8 +8,8 @@ use kmotiondef::variables::{CS0_STOPPING_STATE, SPINDLE};
 
 use super::arguments::Values;
 use super::memory::Geometry;
-use super::motion::planned;
-use super::numbers::{fixed, time};
+use super::motion::planned_answer;
+use super::numbers::{format_fixed, time};
 use super::session::{Answer, Session};
 use crate::firmware::{coord, spindle};
 use crate::out::Message;
@@ -41,7 +41,7 @@ fn point(first: usize, numbers: &[f32]) -> Point {
 }
 
 /// Reports the state of the buffer.
-fn noted(session: &mut Session<'_, '_>, result: Result<(), Message>) -> Answer {
+fn report_buffer(session: &mut Session<'_, '_>, result: Result<(), Message>) -> Answer {
     if let Err(message) = result {
         session.parts.out.remark(session.context.now, message);
     }
@@ -51,7 +51,7 @@ fn noted(session: &mut Session<'_, '_>, result: Result<(), Message>) -> Answer {
 /// Adds a line.
 fn add_line(session: &mut Session<'_, '_>, begin: Point, end: Point, numbers: &[f32]) -> Answer {
     let result = download::line(session.memory(), &begin, &end, &timing(numbers));
-    noted(session, result)
+    report_buffer(session, result)
 }
 
 /// `Linear` and its variants with `letters` letters: beginning, end, timing.
@@ -98,13 +98,13 @@ pub(super) fn arc(session: &mut Session<'_, '_>, values: &Values, plane: Plane) 
     let circle = Circle { plane, centre: [x, y], radii: [radius_x, radius_y], angle, turn };
     let (others, numbers) = rest.split_at(rest.len().saturating_sub(TIMING));
     let (begin, end) = others.split_at(others.len() / 2);
-    let [begin, end] = [begin, end].map(|numbers| outside(plane, numbers));
+    let [begin, end] = [begin, end].map(|numbers| other_letters(plane, numbers));
     let result = download::arc(session.memory(), &circle, &begin, &end, &timing(numbers));
-    noted(session, result)
+    report_buffer(session, result)
 }
 
 /// The letters outside an arc's plane: first the remaining one of X, Y and Z, then A and the following.
-fn outside(plane: Plane, numbers: &[f32]) -> Point {
+fn other_letters(plane: Plane, numbers: &[f32]) -> Point {
     let mut letters = point(2, numbers);
     let rest = match plane {
         Plane::Xy => 2,
@@ -118,7 +118,7 @@ fn outside(plane: Plane, numbers: &[f32]) -> Point {
 /// Adds a command to the buffer.
 fn add(session: &mut Session<'_, '_>, command: Command) -> Answer {
     let result = download::command(session.memory(), command);
-    noted(session, result)
+    report_buffer(session, result)
 }
 
 pub(super) fn set_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
@@ -205,7 +205,7 @@ pub(super) fn set_rapid_fro(session: &mut Session<'_, '_>, values: &Values) -> A
 
 pub(super) fn set_fro_temp(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let time = system::nominal_change_time(session.memory());
-    rate::aim(session.memory(), values.single(0), time);
+    rate::ramp_to_override(session.memory(), values.single(0), time);
     Answer::Nothing
 }
 
@@ -220,8 +220,8 @@ pub(super) fn stop_immediate(session: &mut Session<'_, '_>, values: &Values) -> 
         session.call(|parts, caller| hold::complete(&mut parts.servo, caller.memory));
     }
     match values.integer(0) {
-        0 => planned(session.call(coord::stop_coordinated_motion)),
-        1 => planned(session.call(coord::resume_coordinated_motion)),
+        0 => planned_answer(session.call(coord::stop_coordinated_motion)),
+        1 => planned_answer(session.call(coord::resume_coordinated_motion)),
         _ => {
             session.call(coord::clear_stop_immediately);
             Answer::Nothing
@@ -248,5 +248,5 @@ pub(super) fn trigger_threading(session: &mut Session<'_, '_>, values: &Values) 
 }
 
 pub(super) fn spindle_speed(session: &mut Session<'_, '_>, _: &Values) -> Answer {
-    fixed(session.memory().get(SPINDLE.field(Spindle::TRUE_SPEED_RPS)).into()).into()
+    format_fixed(session.memory().get(SPINDLE.field(Spindle::TRUE_SPEED_RPS)).into()).into()
 }

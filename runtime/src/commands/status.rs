@@ -46,7 +46,7 @@ impl Record {
     }
 
     /// The bytes of a record of another version: the same fields where its layout has them.
-    fn arranged(&self, layout: &StructureLayout, version: i32) -> Vec<u8> {
+    fn in_layout(&self, layout: &StructureLayout, version: i32) -> Vec<u8> {
         let mut bytes = vec![0; layout.size as usize];
         for field in MainStatus::STRUCTURE.fields {
             if let Some(there) = layout.fields.iter().find(|there| there.name == field.name) {
@@ -78,7 +78,7 @@ pub(crate) fn record(parts: &Parts, context: &TickContext<'_>) -> Vec<u8> {
     record.set(MainStatus::KANALOG_BITS_STATE_INPUTS, states(KAN_INPUTS, 16));
     record.set(MainStatus::KANALOG_BITS_STATE_OUTPUTS, states(KAN_OUTPUTS, 8));
     record.set(MainStatus::RUN_ON_START_UP, memory.get(PERSIST.field(Persist::RUN_ON_START_UP)));
-    record.set(MainStatus::THREAD_ACTIVE, active(context));
+    record.set(MainStatus::THREAD_ACTIVE, active_threads(context));
     record.set(MainStatus::STOP_IMMEDIATE_STATE, memory.get(CS0_STOPPING_STATE));
     record.set(MainStatus::TIME_STAMP, seconds(context));
     for index in 0..N_PC_COMM_PERSIST {
@@ -89,7 +89,7 @@ pub(crate) fn record(parts: &Parts, context: &TickContext<'_>) -> Vec<u8> {
     record.set(MainStatus::VIRTUAL_BITS_EX0, memory.get(VIRTUAL_BITS_EX.element(0)));
     match parts.level.status() {
         Some(layout) => {
-            let bytes = record.arranged(layout, parts.level.behaviour().status_version);
+            let bytes = record.in_layout(layout, parts.level.behaviour().status_version);
             match &parts.io.kogna {
                 Some(kogna) => of_kogna::complete(bytes, layout, (parts, memory), kogna),
                 None => bytes,
@@ -154,7 +154,7 @@ fn bits(parts: &Parts, memory: &GuestMemory, first: i32, count: i32) -> i32 {
 }
 
 /// Active threads; bit 0 is the board's own.
-fn active(context: &TickContext<'_>) -> i32 {
+fn active_threads(context: &TickContext<'_>) -> i32 {
     let active = ThreadId::all().filter(|&thread| context.threads.state(thread).is_active());
     active.fold(1, |bits, thread| bits | 1 << thread.get())
 }

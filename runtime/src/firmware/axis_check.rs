@@ -43,12 +43,12 @@ pub(crate) fn enabled(parts: &mut Parts, caller: &Caller<'_>, function: Function
 pub(crate) fn disables(parts: &mut Parts, memory: &GuestMemory, axis: AxisId) {
     let is_move = memory.axis(axis, Chan::LAST_MOTION_TYPE) == LastMotion::Move.get();
     if memory.axis(axis, Chan::ENABLE) != 0 && is_move && has_motion(memory, axis) {
-        parts.calls.motions.cut(axis, memory.axis(axis, Chan::DEST));
+        parts.calls.motions.record_disabled(axis, memory.axis(axis, Chan::DEST));
     }
 }
 
 /// A move to a place, after the zero of the axis has shifted.
-pub(crate) fn shifted(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId) {
+pub(crate) fn check_shifted_move(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId) {
     if let Some(PositionShift { from, to, thread, at }) = parts.calls.motions.take_shift(axis) {
         let other = OtherPlace { thread, at };
         parts
@@ -113,13 +113,13 @@ fn limit_at_other_end(
 }
 
 /// A thread hears that the motion of an axis has ended for which it has waited.
-pub(crate) fn arrived(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
+pub(crate) fn check_arrival(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
     const FAR: f64 = 100.0;
     let memory = &*caller.memory;
     let (dest, position) = (memory.axis(axis, Chan::DEST), memory.axis(axis, Chan::POSITION));
     let rest = (dest - position).abs();
-    let is_far = rest > FAR && rest > parts.calls.motions.way(axis) / 2.0;
-    let settles = parts.servo.axes[axis.index()].settles(rest);
+    let is_far = rest > FAR && rest > parts.calls.motions.last_distance(axis) / 2.0;
+    let settles = parts.servo.axes[axis.index()].is_settling(rest);
     if is_far && !settles && loop_input(memory, axis).is_some() {
         let advice = advice(memory, axis, rest);
         parts.out.diagnose(caller, Message::NotThere { axis, position, dest, advice });
@@ -141,12 +141,12 @@ pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: 
     parts.calls.motions.is_found(axis);
     let Some(thread) = caller.thread else { return };
     let dest = caller.memory.axis(axis, Chan::DEST);
-    let wait = parts.calls.waits.of(thread);
+    let wait = parts.calls.waits.wait_of(thread);
     let is_at_switch = |bit| parts.machine.mechanics.owners(bit).any(|owner| owner == axis);
     if speed == 0.0 && wait.last_bit.is_some_and(is_at_switch) {
-        parts.calls.motions.homes(thread, axis);
+        parts.calls.motions.record_homing(thread, axis);
     }
-    let wait = parts.calls.waits.of(thread);
+    let wait = parts.calls.waits.wait_of(thread);
     let (looked, last_bit, has_repeated) = (wait.looked, wait.last_bit, wait.has_repeated);
     let now = (speed != 0.0).then_some(JogRecord { thread, dest, speed, last_poll: looked });
     let to = speed;
@@ -154,7 +154,7 @@ pub(crate) fn jogs(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, speed: 
     let before =
         parts.calls.motions.jogs(axis, now).filter(|before| is_over(before) && before.thread == thread);
     if let Some(message) = before
-        .filter(|_| speed == 0.0 && parts.calls.waits.of(thread).has_read)
+        .filter(|_| speed == 0.0 && parts.calls.waits.wait_of(thread).has_read)
         .and(last_bit)
         .and_then(|bit| watches_other(parts, caller.memory, axis, bit))
     {
@@ -205,16 +205,22 @@ fn watches_other(parts: &Parts, memory: &GuestMemory, axis: AxisId, bit: Bit) ->
 }
 
 /// A thread zeroes an axis: whether it is the one that it has moved to its switch.
-pub(crate) fn zeroes(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
+pub(crate) fn check_zero(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
     const MOVED: f64 = 1.0;
     parts.calls.motions.is_found(axis);
     let Some(thread) = caller.thread else { return };
     let is_away = |homed: AxisId| caller.memory.axis(homed, Chan::DEST).abs() > MOVED;
-    parts.calls.motions.zeroes(thread, axis, caller.at, is_away);
+    parts.calls.motions.record_zero(thread, axis, caller.at, is_away);
 }
 
 /// An approach that takes minutes.
-pub(crate) fn approaches(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId, tau: f64) {
+pub(crate) fn check_approach(
+    parts: &mut Parts,
+    caller: &Caller<'_>,
+    function: Function,
+    axis: AxisId,
+    tau: f64,
+) {
     const LONG: f64 = 10.0;
     if tau >= LONG {
         parts.out.diagnose(caller, Message::LongTau { function, axis, tau });
@@ -246,7 +252,7 @@ fn output_wraps(memory: &GuestMemory, function: Function, axis: AxisId) -> Optio
 const MOVES: &[Function] = &[Function::Move, Function::MoveRel, Function::MoveAtVel, Function::MoveRelAtVel];
 
 /// A program moves an enabled axis.
-pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId) {
+pub(crate) fn check_move(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId) {
     parts.servo.commands[axis.index()] = Some(CallPlace { thread: caller.thread, at: caller.at });
     let memory = &*caller.memory;
     let messages = [
@@ -271,7 +277,7 @@ pub(crate) fn moved(parts: &mut Parts, caller: &Caller<'_>, function: Function, 
     let is_on_its_way = |axis| is_on_its_way(memory, axis);
     let overlap = Overlap { thread, function, axis, moving: axis, at: caller.at };
     parts.calls.motions.overlaps(overlap, is_on_its_way);
-    let before = parts.calls.motions.moves(thread, axis);
+    let before = parts.calls.motions.record_mover(thread, axis);
     if function == Function::MoveXYZABC {
         parts.calls.motions.moves_together(thread, axis);
     }
@@ -339,21 +345,27 @@ pub(crate) fn speed_changed(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId
 }
 
 /// A move of a few counts of an axis that counts in them.
-pub(crate) fn goes(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId, way: f64) {
+pub(crate) fn check_small_move(
+    parts: &mut Parts,
+    caller: &Caller<'_>,
+    function: Function,
+    axis: AxisId,
+    way: f64,
+) {
     const FEW: f64 = 10.0;
     let is_unit = |field: Field<f32>| f64::from(caller.memory.axis(axis, field)).abs() == 1.0;
     let is_plain = is_unit(Chan::OUTPUT_GAIN) && is_unit(Chan::INPUT_GAIN0);
     let is_tiny = is_plain && way < FEW && way != libm::floor(way);
     let small =
         caller.thread.filter(|_| is_tiny).map(|thread| SmallMove { thread, at: caller.at, function, way });
-    parts.calls.motions.goes(axis, way, small);
+    parts.calls.motions.record_move_length(axis, way, small);
     let has_own_speed = matches!(function, Function::MoveAtVel | Function::MoveRelAtVel);
     let speed = if has_own_speed { 0.0 } else { caller.memory.axis(axis, Chan::VEL) };
     parts.calls.motions.begins_at(axis, speed);
 }
 
 /// A motion that takes minutes, most of them for its acceleration, or several seconds because of one limit.
-pub(crate) fn planned(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId, way: f64) {
+pub(crate) fn check_plan(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: AxisId, way: f64) {
     const LONG: f64 = 60.0;
     /// A time that is long for a move which the other limits let end in an eighth of it.
     const SLOW: f64 = 4.0;

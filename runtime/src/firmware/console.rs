@@ -111,7 +111,7 @@ pub(crate) fn formatted(
 }
 
 /// Converts `text` under a pattern into the places after `...`.
-pub(crate) fn converted(
+pub(crate) fn scan_into(
     parts: &Parts,
     caller: &mut Caller<'_>,
     text: &[u8],
@@ -142,18 +142,18 @@ pub(crate) fn note_cut(parts: &mut Parts, caller: &Caller<'_>, function: Functio
 }
 
 /// Returns the part of a text that one call may print: at most 128 characters, and nothing after a zero byte.
-pub(crate) fn cut(text: &[u8]) -> &[u8] {
+pub(crate) fn printable_part(text: &[u8]) -> &[u8] {
     let text = &text[..text.len().min(MAX_STRING)];
     &text[..text.iter().position(|&byte| byte == 0).unwrap_or(text.len())]
 }
 
 /// Puts text on the console in the slice in which its formatting ends; the call waits while the queue is full.
-pub(crate) fn put(parts: &mut Parts, caller: &Caller<'_>, text: &[u8], result: i32) -> Outcome<i32> {
+pub(crate) fn put_text(parts: &mut Parts, caller: &Caller<'_>, text: &[u8], result: i32) -> Outcome<i32> {
     if caller.thread.is_some() && caller.is_overdrawn() {
-        parts.calls.keep(caller, Continuation::Print { rest: text.to_vec(), result });
+        parts.calls.store(caller, Continuation::Print { rest: text.to_vec(), result });
         return Outcome::Wait(Wake::Retry);
     }
-    let begun = parts.calls.notices.prints(caller.thread, caller.at, text);
+    let begun = parts.calls.notices.record_print(caller.thread, caller.at, text);
     if let Some(other) = begun.filter(|_| caller.thread.is_some()) {
         parts.out.diagnose(caller, Message::LinesMixed { other });
     }
@@ -161,15 +161,15 @@ pub(crate) fn put(parts: &mut Parts, caller: &Caller<'_>, text: &[u8], result: i
     if rest.is_empty() {
         return Outcome::Done(result);
     }
-    parts.calls.keep(caller, Continuation::Print { rest, result });
+    parts.calls.store(caller, Continuation::Print { rest, result });
     Outcome::Wait(Wake::Retry)
 }
 
 /// Continues a call that waits for the queue.
-pub(crate) fn resumed(parts: &mut Parts, caller: &Caller<'_>) -> Option<Outcome<i32>> {
+pub(crate) fn resume_call(parts: &mut Parts, caller: &Caller<'_>) -> Option<Outcome<i32>> {
     caller.woken?;
     match parts.calls.take(caller) {
-        Some(Continuation::Print { rest, result }) => Some(put(parts, caller, &rest, result)),
+        Some(Continuation::Print { rest, result }) => Some(put_text(parts, caller, &rest, result)),
         _ => Some(Outcome::Done(0)),
     }
 }
@@ -180,21 +180,22 @@ pub(crate) fn printf(
     pattern: GuestAddr,
     arguments: Varargs,
 ) -> Result<Outcome<i32>, TrapKind> {
-    if let Some(outcome) = resumed(parts, caller) {
+    if let Some(outcome) = resume_call(parts, caller) {
         return Ok(outcome);
     }
     let text = formatted(parts, caller, pattern, arguments)?;
     float_bits::notice_text(parts, caller, Function::printf, &text);
     note_cut(parts, caller, Function::printf, &text);
-    let longest = cut(&text).split(|&byte| byte == b'\n').map(<[u8]>::len).max().unwrap_or_default();
+    let longest =
+        printable_part(&text).split(|&byte| byte == b'\n').map(<[u8]>::len).max().unwrap_or_default();
     if longest > LINE_LIMIT && text.len() <= MAX_STRING {
         parts.out.diagnose(caller, Message::LongLine { size: longest });
     }
     if text.is_empty() {
         costs::spend(caller, costs::NOTHING_PRINTED);
     }
-    spend_queueing(caller, cut(&text));
-    Ok(put(parts, caller, cut(&text), text.len() as i32))
+    spend_queueing(caller, printable_part(&text));
+    Ok(put_text(parts, caller, printable_part(&text), text.len() as i32))
 }
 
 pub(crate) fn vprintf(
@@ -212,12 +213,12 @@ pub(crate) fn print(
     caller: &mut Caller<'_>,
     string: GuestAddr,
 ) -> Result<Outcome<i32>, TrapKind> {
-    if let Some(outcome) = resumed(parts, caller) {
+    if let Some(outcome) = resume_call(parts, caller) {
         return Ok(outcome);
     }
     let text = text(caller, string)?;
     spend_queueing(caller, &text);
-    Ok(put(parts, caller, &text, 0))
+    Ok(put_text(parts, caller, &text, 0))
 }
 
 /// The one value of `PrintFloat` and `PrintInt`.
@@ -252,14 +253,14 @@ fn print_one(
     pattern: GuestAddr,
     mut value: SingleArgument,
 ) -> Result<Outcome<i32>, TrapKind> {
-    if let Some(outcome) = resumed(parts, caller) {
+    if let Some(outcome) = resume_call(parts, caller) {
         return Ok(outcome);
     }
     let pattern = text(caller, pattern)?;
     let formatted = format_counted(parts.level.behaviour().text, &pattern, &mut value)?;
     caller.spend(Cycles::new(formatted.cycles.into()));
-    spend_queueing(caller, cut(&formatted.text));
-    Ok(put(parts, caller, cut(&formatted.text), 0))
+    spend_queueing(caller, printable_part(&formatted.text));
+    Ok(put_text(parts, caller, printable_part(&formatted.text), 0))
 }
 
 pub(crate) fn print_float(
@@ -285,20 +286,20 @@ pub(crate) fn puts(
     caller: &mut Caller<'_>,
     string: GuestAddr,
 ) -> Result<Outcome<i32>, TrapKind> {
-    if let Some(outcome) = resumed(parts, caller) {
+    if let Some(outcome) = resume_call(parts, caller) {
         return Ok(outcome);
     }
     let mut text = text(caller, string)?;
     text.push(b'\n');
     spend_queueing(caller, &text);
-    Ok(put(parts, caller, &text, text.len() as i32))
+    Ok(put_text(parts, caller, &text, text.len() as i32))
 }
 
 pub(crate) fn putchar(parts: &mut Parts, caller: &mut Caller<'_>, character: i32) -> Outcome<i32> {
-    if let Some(outcome) = resumed(parts, caller) {
+    if let Some(outcome) = resume_call(parts, caller) {
         return outcome;
     }
-    put(parts, caller, &[character as u8], i32::from(character as u8))
+    put_text(parts, caller, &[character as u8], i32::from(character as u8))
 }
 
 /// Writes a formatted string to memory.
@@ -368,7 +369,7 @@ pub(crate) fn sscanf(
     places: Varargs,
 ) -> Result<i32, TrapKind> {
     let (string, pattern) = (text(caller, string)?, text(caller, pattern)?);
-    converted(parts, caller, &string, &pattern, places)
+    scan_into(parts, caller, &string, &pattern, places)
 }
 
 #[cfg(test)]

@@ -133,7 +133,7 @@ pub(crate) fn stop_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>
             note_others(parts, caller);
             feedhold::note_time(caller.memory);
             costs::spend(caller, costs::BEFORE_A_WAIT - Function::StopCoordinatedMotion.row().cost.get());
-            parts.calls.keep(caller, Continuation::Stop(None));
+            parts.calls.store(caller, Continuation::Stop(None));
             return Outcome::Wait(Wake::NextSlice);
         }
     };
@@ -154,7 +154,7 @@ fn stop_later(parts: &mut Parts, caller: &Caller<'_>, left: Vec<AxisId>) -> Outc
     if left.is_empty() {
         return Outcome::Done(());
     }
-    parts.calls.keep(caller, Continuation::Stop(Some(left)));
+    parts.calls.store(caller, Continuation::Stop(Some(left)));
     Outcome::Wait(Wake::NextSlice)
 }
 
@@ -189,7 +189,7 @@ pub(crate) fn resume_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'
         if let Some((target, limits)) = resumed {
             let planning = |caller: &Caller<'_>| planning::of_move(caller.memory, axis, target, &limits);
             if let Some(pause) = schedule::plan(parts, caller, axis, progress, 0, planning) {
-                parts.calls.keep(caller, Continuation::Resume(left, pause.then));
+                parts.calls.store(caller, Continuation::Resume(left, pause.then));
                 return Outcome::Wait(pause.wake);
             }
         }
@@ -247,7 +247,7 @@ pub(crate) fn set_rapid_fro(parts: &mut Parts, caller: &mut Caller<'_>, value: f
 pub(crate) fn set_fro_temp(parts: &mut Parts, caller: &mut Caller<'_>, value: f32) {
     check_override(parts, caller, Function::SetFROTemp, value);
     let time = change_time(caller);
-    rate::aim(caller.memory, value, time);
+    rate::ramp_to_override(caller.memory, value, time);
 }
 
 pub(crate) fn set_fro_w_rate(parts: &mut Parts, caller: &mut Caller<'_>, value: f32, time: f32) {
@@ -262,7 +262,7 @@ pub(crate) fn set_rapid_fro_w_rate(parts: &mut Parts, caller: &mut Caller<'_>, v
 
 pub(crate) fn set_fro_w_rate_temp(parts: &mut Parts, caller: &mut Caller<'_>, value: f32, time: f32) {
     check_override(parts, caller, Function::SetFROwRateTemp, value);
-    rate::aim(caller.memory, value, time);
+    rate::ramp_to_override(caller.memory, value, time);
 }
 
 /// Counts the entry just filled and advances to the next, which ends the buffer.

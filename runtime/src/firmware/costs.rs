@@ -78,7 +78,7 @@ pub(super) const ASINF: Arc = Arc { inner: -50, outer: 30, edge: 0 };
 pub(super) const ACOSF: Arc = Arc { inner: -35, outer: 30, edge: 0 };
 
 impl Arc {
-    pub(super) fn of(&self, x: f64) -> i64 {
+    pub(super) fn cost(&self, x: f64) -> i64 {
         match x.abs() {
             size if size <= 0.5 => self.inner,
             size if size < 1.0 => self.outer,
@@ -138,7 +138,7 @@ pub(super) fn spend_bit(caller: &mut Caller<'_>, ranges: Ranges, bit: i32) {
 }
 
 /// Spends the cost of a motion call without effect.
-pub(super) fn refused(caller: &mut Caller<'_>, function: Function) {
+pub(super) fn spend_refusal(caller: &mut Caller<'_>, function: Function) {
     spend(caller, REFUSED - function.row().cost.get());
 }
 

@@ -13,7 +13,7 @@ use vm::firmware::{Caller, Outcome, Wake};
 use vm::trap::TrapKind;
 
 use super::calls::Continuation;
-use super::console::{converted, cut, formatted, note_cut, put, resumed, spend_queueing};
+use super::console::{formatted, note_cut, printable_part, put_text, resume_call, scan_into, spend_queueing};
 use super::parts::Parts;
 use super::string::text;
 use crate::firmware::dispatch::Varargs;
@@ -53,7 +53,7 @@ impl Arguments for NoArguments {
 /// A request as it is printed. Board quirk: the text after the code is taken as a format a second time.
 fn printed(request: DiskRequest, text: &[u8]) -> Result<Vec<u8>, TrapKind> {
     let text = format(&[&[request.code()], text].concat(), &mut NoArguments)?;
-    Ok(cut(&text).to_vec())
+    Ok(printable_part(&text).to_vec())
 }
 
 /// Sends a request and returns `result` once the queue has taken it.
@@ -63,7 +63,7 @@ fn send(
     request: DiskRequest,
     result: GuestAddr,
 ) -> Outcome<GuestAddr> {
-    let outcome = put(parts, caller, &[request.code(), b'\n'], result.get().cast_signed());
+    let outcome = put_text(parts, caller, &[request.code(), b'\n'], result.get().cast_signed());
     address(outcome)
 }
 
@@ -77,7 +77,7 @@ fn address(outcome: Outcome<i32>) -> Outcome<GuestAddr> {
 }
 
 /// Returns whether the last requested line has arrived; `None` while it is still expected.
-fn arrival(parts: &mut Parts, caller: &Caller<'_>) -> Option<bool> {
+fn line_arrived(parts: &mut Parts, caller: &Caller<'_>) -> Option<bool> {
     let status = caller.memory.get(READ_DISK_BUFFER_STATUS);
     if status == ASKED {
         return None;
@@ -93,7 +93,7 @@ pub(crate) fn fopen(
     mode: GuestAddr,
 ) -> Result<Outcome<GuestAddr>, TrapKind> {
     if caller.woken.is_some() {
-        return Ok(opened(parts, caller));
+        return Ok(resume_open(parts, caller));
     }
     let (path, mode) = (text(caller, path)?, text(caller, mode)?);
     let (request, handle) = match mode.first() {
@@ -106,20 +106,20 @@ pub(crate) fn fopen(
     if request == DiskRequest::Open {
         caller.memory.set(READ_DISK_BUFFER_STATUS, ASKED);
     }
-    let outcome = put(parts, caller, &line, handle.get().cast_signed());
+    let outcome = put_text(parts, caller, &line, handle.get().cast_signed());
     // The answer comes after the request has been sent.
     let waits = request == DiskRequest::Open && matches!(outcome, Outcome::Done(_));
     Ok(if waits { Outcome::Wait(Wake::Retry) } else { address(outcome) })
 }
 
 /// Continues an opening: the request has not been sent, or its answer is still expected.
-fn opened(parts: &mut Parts, caller: &Caller<'_>) -> Outcome<GuestAddr> {
+fn resume_open(parts: &mut Parts, caller: &Caller<'_>) -> Outcome<GuestAddr> {
     if let Some(Continuation::Print { rest, result }) = parts.calls.take(caller) {
-        let outcome = address(put(parts, caller, &rest, result));
+        let outcome = address(put_text(parts, caller, &rest, result));
         let waits = outcome == Outcome::Done(READING);
         return if waits { Outcome::Wait(Wake::Retry) } else { outcome };
     }
-    match arrival(parts, caller) {
+    match line_arrived(parts, caller) {
         None => Outcome::Wait(Wake::Retry),
         Some(true) => Outcome::Done(READING),
         Some(false) => Outcome::Done(GuestAddr::NULL),
@@ -127,11 +127,11 @@ fn opened(parts: &mut Parts, caller: &Caller<'_>) -> Outcome<GuestAddr> {
 }
 
 pub(crate) fn fclose(parts: &mut Parts, caller: &mut Caller<'_>, file: GuestAddr) -> Outcome<i32> {
-    if let Some(outcome) = resumed(parts, caller) {
+    if let Some(outcome) = resume_call(parts, caller) {
         return outcome;
     }
     let request = if file == READING { DiskRequest::CloseReading } else { DiskRequest::CloseWriting };
-    put(parts, caller, &[request.code(), b'\n'], 0)
+    put_text(parts, caller, &[request.code(), b'\n'], 0)
 }
 
 /// Returns whether there is a single percent sign.
@@ -164,16 +164,16 @@ pub(crate) fn fprintf(
     pattern: GuestAddr,
     arguments: Varargs,
 ) -> Result<Outcome<i32>, TrapKind> {
-    if let Some(outcome) = resumed(parts, caller) {
+    if let Some(outcome) = resume_call(parts, caller) {
         return Ok(outcome);
     }
     let text = formatted(parts, caller, pattern, arguments)?;
     note_cut(parts, caller, Function::fprintf, &text);
-    let line = printed(DiskRequest::Write, cut(&text))?;
-    spend_queueing(caller, cut(&text));
-    caller.spend(Cycles::new(55 * cut(&text).len() as i64));
+    let line = printed(DiskRequest::Write, printable_part(&text))?;
+    spend_queueing(caller, printable_part(&text));
+    caller.spend(Cycles::new(55 * printable_part(&text).len() as i64));
     warn(parts, caller, &text);
-    Ok(put(parts, caller, &line, 0))
+    Ok(put_text(parts, caller, &line, 0))
 }
 
 /// The next line, up to `limit` characters; without a terminator when the line has as many or more.
@@ -187,10 +187,10 @@ pub(crate) fn fgets(
     if file != READING {
         return Ok(Outcome::Done(GuestAddr::NULL));
     }
-    if let Some(outcome) = sent(parts, caller) {
+    if let Some(outcome) = resume_send(parts, caller) {
         return Ok(address(outcome));
     }
-    match arrival(parts, caller) {
+    match line_arrived(parts, caller) {
         None => return Ok(Outcome::Wait(Wake::Retry)),
         Some(false) => return Ok(Outcome::Done(GuestAddr::NULL)),
         Some(true) => {}
@@ -204,10 +204,10 @@ pub(crate) fn fgets(
 }
 
 /// Continues sending the request for the next line, if the call waits for that.
-fn sent(parts: &mut Parts, caller: &Caller<'_>) -> Option<Outcome<i32>> {
+fn resume_send(parts: &mut Parts, caller: &Caller<'_>) -> Option<Outcome<i32>> {
     caller.woken?;
     match parts.calls.take(caller) {
-        Some(Continuation::Print { rest, result }) => Some(put(parts, caller, &rest, result)),
+        Some(Continuation::Print { rest, result }) => Some(put_text(parts, caller, &rest, result)),
         _ => None,
     }
 }
@@ -228,18 +228,18 @@ pub(crate) fn fscanf(
     if file != READING {
         return Ok(Outcome::Done(0));
     }
-    if let Some(outcome) = sent(parts, caller) {
+    if let Some(outcome) = resume_send(parts, caller) {
         return Ok(outcome);
     }
-    let Some(is_there) = arrival(parts, caller) else { return Ok(Outcome::Wait(Wake::Retry)) };
+    let Some(is_there) = line_arrived(parts, caller) else { return Ok(Outcome::Wait(Wake::Retry)) };
     let pattern = text(caller, pattern)?;
     let line = buffered(caller)?;
-    let count = converted(parts, caller, cut(&line), &pattern, places)?;
+    let count = scan_into(parts, caller, printable_part(&line), &pattern, places)?;
     if !is_there {
         return Ok(Outcome::Done(count));
     }
     caller.memory.set(READ_DISK_BUFFER_STATUS, ASKED);
-    Ok(put(parts, caller, &[DiskRequest::NextLine.code(), b'\n'], count))
+    Ok(put_text(parts, caller, &[DiskRequest::NextLine.code(), b'\n'], count))
 }
 
 /// 1 after a failed read or opening.

@@ -22,7 +22,7 @@ const DIGITS: usize = 9;
 const ABSURD: f64 = 1e8;
 
 /// A program passes a number to a call; true if it comes from the bits of a `float`.
-pub(crate) fn notice(parts: &mut Parts, caller: &Caller<'_>, function: Function, value: f64) -> bool {
+pub(crate) fn check(parts: &mut Parts, caller: &Caller<'_>, function: Function, value: f64) -> bool {
     let is_whole = f64::from(value as i32) == value && is_number(value as i32);
     let is_absurd = value.is_finite() && value.abs() >= ABSURD;
     if !is_whole && !is_absurd {
@@ -68,7 +68,7 @@ pub(crate) fn notice_text(parts: &mut Parts, caller: &Caller<'_>, function: Func
     let numbers = text.split(|byte| !(byte.is_ascii_digit() || *byte == b'-'));
     for number in numbers.filter(|number| number.len() >= DIGITS) {
         if let Some(value) = std::str::from_utf8(number).ok().and_then(|number| number.parse::<i32>().ok()) {
-            _ = notice(parts, caller, function, f64::from(value));
+            _ = check(parts, caller, function, f64::from(value));
         }
     }
 }

@@ -96,12 +96,12 @@ fn write(
     check_written(parts, caller, function, bit);
     axis_check::switches(parts, caller, function, bit);
     if let Some(stage) = interrupted_at(parts, caller, function)
-        && let Some(group) = parts.io.outputs.changed(bit, level)
+        && let Some(group) = parts.io.outputs.group_with(bit, level)
     {
         if stage == OutputStage::Stored {
             parts.io.outputs.store(group);
         }
-        parts.calls.keep(caller, Continuation::Output(group, stage));
+        parts.calls.store(caller, Continuation::Output(group, stage));
         return Outcome::Wait(Wake::NextSlice);
     }
     switch(parts, caller, function, bit, level);
@@ -127,7 +127,7 @@ fn switch(parts: &mut Parts, caller: &mut Caller<'_>, function: Function, bit: B
     let now = caller.now();
     parts.lines(now).write(caller.memory, bit, level);
     if level
-        && let Some(other) = parts.machine.opposite(bit)
+        && let Some(other) = parts.machine.opposite_output(bit)
         && bits::bit_state(&parts.io, caller.memory, other).0
     {
         parts.out.diagnose(caller, Message::BothDirections { function, bit, other });
@@ -185,7 +185,7 @@ fn check_read(parts: &mut Parts, caller: &Caller<'_>, bit: Bit) {
         Some(BitKind::KstepInput) if caller.memory.get(KSTEP_PRESENT) == 0 => {
             parts.out.diagnose(caller, Message::KstepAbsent { bit });
         }
-        Some(BitKind::Pin) if parts.io.pins.is_generated(bit) && parts.io.stepgens.makes(bit) => {
+        Some(BitKind::Pin) if parts.io.pins.is_generated(bit) && parts.io.stepgens.drives_pin(bit) => {
             parts.out.diagnose(caller, Message::StepPinRead { bit });
         }
         _ => {}
@@ -204,7 +204,7 @@ pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> 
     if let Some((axis, width, step)) = parts.machine.index_missed(bit, caller.now()) {
         parts.out.diagnose(caller, Message::IndexMissed { bit, axis, width, step });
     }
-    let since = caller.thread.map(|thread| parts.calls.waits.of(thread).since);
+    let since = caller.thread.map(|thread| parts.calls.waits.wait_of(thread).since);
     if let Some(late) = parts.machine.read_late(bit, level, caller.now(), since) {
         let LateRead { axis, ms, step } = late;
         parts.out.diagnose(caller, Message::ReadLate { bit, axis, ms, step });

@@ -47,7 +47,7 @@ fn read(parts: &Parts, caller: &Caller<'_>, group: PinGroup, pin: i32) -> i32 {
 }
 
 /// Tells that a function is not simulated; the thread ends.
-fn refuse<T>(parts: &mut Parts, caller: &Caller<'_>, function: &'static str) -> Outcome<T> {
+fn end_unsimulated<T>(parts: &mut Parts, caller: &Caller<'_>, function: &'static str) -> Outcome<T> {
     parts.out.diagnose(caller, Message::NotSimulated { function });
     Outcome::End
 }
@@ -107,7 +107,7 @@ pub(crate) fn define_coord_system_8p(
     _: i32,
     _: i32,
 ) -> Outcome<()> {
-    refuse(parts, caller, "DefineCoordSystem8P")
+    end_unsimulated(parts, caller, "DefineCoordSystem8P")
 }
 
 pub(crate) fn nand_write_blocks(
@@ -117,7 +117,7 @@ pub(crate) fn nand_write_blocks(
     _: GuestAddr,
     _: i32,
 ) -> Outcome<i32> {
-    refuse(parts, caller, "NandWriteBlocks")
+    end_unsimulated(parts, caller, "NandWriteBlocks")
 }
 
 pub(crate) fn nand_read_blocks(
@@ -128,11 +128,11 @@ pub(crate) fn nand_read_blocks(
     _: GuestAddr,
     _: i32,
 ) -> Outcome<i32> {
-    refuse(parts, caller, "NandReadBlocks")
+    end_unsimulated(parts, caller, "NandReadBlocks")
 }
 
 pub(crate) fn enable_rs422_cmds(parts: &mut Parts, caller: &mut Caller<'_>, _: i32) -> Outcome<()> {
-    refuse(parts, caller, "EnableRS422Cmds")
+    end_unsimulated(parts, caller, "EnableRS422Cmds")
 }
 
 pub(crate) fn rs422_set_baud_rate(
@@ -144,13 +144,13 @@ pub(crate) fn rs422_set_baud_rate(
     _: i32,
     _: i32,
 ) -> Outcome<()> {
-    refuse(parts, caller, "RS422_SetBaudRate")
+    end_unsimulated(parts, caller, "RS422_SetBaudRate")
 }
 
 pub(crate) fn rs422_get_char(parts: &mut Parts, caller: &mut Caller<'_>) -> Outcome<i32> {
-    refuse(parts, caller, "RS422_GetChar")
+    end_unsimulated(parts, caller, "RS422_GetChar")
 }
 
 pub(crate) fn rs422_put_char(parts: &mut Parts, caller: &mut Caller<'_>, _: i32) -> Outcome<()> {
-    refuse(parts, caller, "RS422_PutChar")
+    end_unsimulated(parts, caller, "RS422_PutChar")
 }

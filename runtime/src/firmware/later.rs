@@ -83,7 +83,7 @@ pub(crate) struct Callees(Option<Arc<BTreeMap<GuestAddr, Callee>>>);
 
 impl Callees {
     /// Those of a board.
-    pub(crate) fn of(board: &TargetBoard) -> Self {
+    pub(crate) fn for_board(board: &TargetBoard) -> Self {
         if board.is_default() {
             return Self::default();
         }
@@ -95,7 +95,7 @@ impl Callees {
 
     /// The function at an address.
     #[inline]
-    pub(crate) fn at(&self, address: GuestAddr) -> Option<Callee> {
+    pub(crate) fn callee_at(&self, address: GuestAddr) -> Option<Callee> {
         match &self.0 {
             None => function_at(address).map(Callee::Row),
             Some(callees) => callees.get(&address).copied(),

@@ -64,13 +64,13 @@ macro_rules! varying {
 
 varying! {
     /// Arc sine.
-    asin(x) -> f64 = doubles::asin(x), costs costs::ASIN.of(x);
+    asin(x) -> f64 = doubles::asin(x), costs costs::ASIN.cost(x);
     /// Arc sine.
-    asinf(x) -> f32 = singles::asin(x), costs costs::ASINF.of(x.into());
+    asinf(x) -> f32 = singles::asin(x), costs costs::ASINF.cost(x.into());
     /// Arc cosine.
-    acos(x) -> f64 = doubles::acos(x), costs costs::ACOS.of(x);
+    acos(x) -> f64 = doubles::acos(x), costs costs::ACOS.cost(x);
     /// Arc cosine.
-    acosf(x) -> f32 = singles::acos(x), costs costs::ACOSF.of(x.into());
+    acosf(x) -> f32 = singles::acos(x), costs costs::ACOSF.cost(x.into());
     /// Arc tangent.
     atan(x) -> f64 = doubles::atan(x), costs costs::of_arc_tangent(x);
     /// Arc tangent of y/x in all four quadrants.

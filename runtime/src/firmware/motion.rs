@@ -46,7 +46,7 @@ fn is_after_axes(caller: &Caller<'_>, axis: i32) -> bool {
 }
 
 /// Prints the board's message about an axis that does not exist.
-fn invalid(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32, what: &str) {
+fn print_invalid_axis(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32, what: &str) {
     parts.out.diagnose(caller, Message::NoSuchAxis { function, axis });
     if !is_after_axes(caller, axis) {
         parts.out.console.message(&format!("Attempt to {what} invalid Chan"));
@@ -55,7 +55,7 @@ fn invalid(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32
 
 /// An axis that does not exist is enabled; that after the last ends the program.
 fn enable_invalid(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32) -> Outcome<()> {
-    invalid(parts, caller, function, axis, "enable");
+    print_invalid_axis(parts, caller, function, axis, "enable");
     if is_after_axes(caller, axis) { Outcome::End } else { Outcome::Done(()) }
 }
 
@@ -126,10 +126,10 @@ fn enable(parts: &mut Parts, caller: &mut Caller<'_>, function: Function, axis: 
 
 pub(crate) fn disable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
     let Some(axis) = caller.memory.axes().get(axis) else {
-        return invalid(parts, caller, Function::DisableAxis, axis, "Disable");
+        return print_invalid_axis(parts, caller, Function::DisableAxis, axis, "Disable");
     };
     axis_check::ends_path(parts, caller, Function::DisableAxis, axis);
-    replaced::ends(parts, caller, axis, Function::DisableAxis);
+    replaced::check_end(parts, caller, axis, Function::DisableAxis);
     axis_check::disables(parts, caller.memory, axis);
     switching::switch_off(&mut parts.servo, &mut parts.machine, caller.memory, axis);
     hold::abort_if_member(caller.memory, axis);
@@ -138,10 +138,10 @@ pub(crate) fn disable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32
 pub(crate) fn zero(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
     axis_check::goes_on(parts, caller);
     let Some(axis) = caller.memory.axes().get(axis) else {
-        return invalid(parts, caller, Function::Zero, axis, Function::Zero.name());
+        return print_invalid_axis(parts, caller, Function::Zero, axis, Function::Zero.name());
     };
     axis_check::ends_motion(parts, caller, Function::Zero, axis);
-    axis_check::zeroes(parts, caller, axis);
+    axis_check::check_zero(parts, caller, axis);
     switching::zero(&mut parts.servo, &mut parts.machine, caller.memory, axis);
     hold::abort_if_member(caller.memory, axis);
 }
@@ -273,10 +273,10 @@ fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) ->
     };
     let (target, progress) = match (caller.woken, parts.calls.take(caller)) {
         (Some(_), Some(Continuation::Motion(target, progress))) => (target, progress),
-        _ => (requested(caller.memory, axis, request), PlanningStage::Called),
+        _ => (requested_target(caller.memory, axis, request), PlanningStage::Called),
     };
     let target = target.clamp(-FARTHEST, FARTHEST);
-    if progress == PlanningStage::Called && !begins(parts, caller, request, axis, target) {
+    if progress == PlanningStage::Called && !may_begin(parts, caller, request, axis, target) {
         return Outcome::Done(());
     }
     let Some((limits, decel)) = limits_with(caller.memory, axis, request.velocity, request.own) else {
@@ -291,7 +291,7 @@ fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) ->
         if is_direct { costs::AFTER_MOVE } else { planning::of_move(caller.memory, axis, target, &limits) }
     };
     if let Some(pause) = schedule::plan(parts, caller, axis, progress, row_cost(function), planning) {
-        parts.calls.keep(caller, Continuation::Motion(target, pause.then));
+        parts.calls.store(caller, Continuation::Motion(target, pause.then));
         return Outcome::Wait(pause.wake);
     }
     notice_hurry(parts, caller, axis, function);
@@ -304,13 +304,13 @@ fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) ->
 }
 
 /// The target that a move names.
-fn requested(memory: &GuestMemory, axis: AxisId, request: &MoveRequest) -> f64 {
+fn requested_target(memory: &GuestMemory, axis: AxisId, request: &MoveRequest) -> f64 {
     let target = request.target + if request.is_relative { memory.axis(axis, Chan::DEST) } else { 0.0 };
     if request.is_soft { within_soft_limits(memory, axis, target) } else { target }
 }
 
 /// Returns whether a move may begin; the cycles of a refusal are spent if not.
-fn begins(
+fn may_begin(
     parts: &mut Parts,
     caller: &mut Caller<'_>,
     request: &MoveRequest,
@@ -319,30 +319,30 @@ fn begins(
 ) -> bool {
     let function = request.function;
     if !may_move(parts, caller, axis, function) {
-        costs::refused(caller, function);
+        costs::spend_refusal(caller, function);
         return false;
     }
     let motion = match request.is_relative {
         true => CommandedMotion::MoveRel(request.target, target),
         false => CommandedMotion::Move(target),
     };
-    replaced::begins(parts, caller, axis, function, motion);
-    let is_bits = float_bits::notice(parts, caller, function, request.target);
+    replaced::check_begin(parts, caller, axis, function, motion);
+    let is_bits = float_bits::check(parts, caller, function, request.target);
     let way = target - caller.memory.axis(axis, Chan::DEST);
-    axis_check::moved(parts, caller, function, axis);
+    axis_check::check_move(parts, caller, function, axis);
     if !request.is_relative {
-        axis_check::shifted(parts, caller, function, axis);
+        axis_check::check_shifted_move(parts, caller, function, axis);
     }
     if request.target.is_finite() {
-        axis_check::goes(parts, caller, function, axis, way.abs());
+        axis_check::check_small_move(parts, caller, function, axis, way.abs());
         if !is_bits {
-            axis_check::planned(parts, caller, function, axis, way.abs());
+            axis_check::check_plan(parts, caller, function, axis, way.abs());
         }
         axis_check::target_beyond(parts, caller, function, axis, target);
     }
     // A destination that is not a number makes a relative target another one.
     if !is_number(parts, caller, function, request.target) || is_beyond(parts, caller, function, axis, way) {
-        costs::refused(caller, function);
+        costs::spend_refusal(caller, function);
         return false;
     }
     true
@@ -538,7 +538,7 @@ fn begin_jog(
     let is_enabled = caller.memory.axis(axis, Chan::ENABLE) != 0;
     // To stop an axis that is disabled is no mistake.
     if !is_enabled && velocity == 0.0 {
-        costs::refused(caller, Function::Jog);
+        costs::spend_refusal(caller, Function::Jog);
         return Outcome::Done(());
     }
     // Odd and kept: to stop an axis of the coordinate system gives up a feedhold, and the path that it holds.
@@ -549,7 +549,7 @@ fn begin_jog(
         caller.memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
     }
     if !may_move(parts, caller, axis, Function::Jog) || !is_number(parts, caller, Function::Jog, velocity) {
-        costs::refused(caller, Function::Jog);
+        costs::spend_refusal(caller, Function::Jog);
         return Outcome::Done(());
     }
     let velocity = velocity.clamp(-FARTHEST, FARTHEST);
@@ -559,9 +559,9 @@ fn begin_jog(
     };
     if progress == PlanningStage::Called {
         axis_check::jogs(parts, caller, axis, velocity);
-        _ = float_bits::notice(parts, caller, Function::Jog, velocity);
+        _ = float_bits::check(parts, caller, Function::Jog, velocity);
         if is_beyond(parts, caller, Function::Jog, axis, velocity) {
-            costs::refused(caller, Function::Jog);
+            costs::spend_refusal(caller, Function::Jog);
             return Outcome::Done(());
         }
         // At rest there is nothing to stop. What counts is whether a motion is executed, not its speed.
@@ -570,10 +570,10 @@ fn begin_jog(
             return Outcome::Done(());
         }
         if velocity == 0.0 {
-            replaced::ends(parts, caller, axis, Function::Jog);
+            replaced::check_end(parts, caller, axis, Function::Jog);
         } else {
-            replaced::begins(parts, caller, axis, Function::Jog, CommandedMotion::Jog(velocity));
-            axis_check::moved(parts, caller, Function::Jog, axis);
+            replaced::check_begin(parts, caller, axis, Function::Jog, CommandedMotion::Jog(velocity));
+            axis_check::check_move(parts, caller, Function::Jog, axis);
         }
     }
     // Any speed will do: only acceleration and jerk limit a jog.
@@ -588,7 +588,7 @@ fn begin_jog(
     };
     let charged = row_cost(Function::Jog);
     if let Some(pause) = schedule::plan(parts, caller, axis, progress, charged, planning) {
-        parts.calls.keep(caller, Continuation::Motion(velocity, pause.then));
+        parts.calls.store(caller, Continuation::Motion(velocity, pause.then));
         return Outcome::Wait(pause.wake);
     }
     let point = present(caller.memory, axis);
@@ -615,8 +615,8 @@ pub(crate) fn move_exp(
     }
     let x = x.clamp(-FARTHEST, FARTHEST);
     if caller.woken.is_none() {
-        axis_check::moved(parts, caller, Function::MoveExp, axis);
-        axis_check::approaches(parts, caller, Function::MoveExp, axis, tau);
+        axis_check::check_move(parts, caller, Function::MoveExp, axis);
+        axis_check::check_approach(parts, caller, Function::MoveExp, axis, tau);
     }
     let progress = if caller.woken.is_some() { PlanningStage::Due } else { PlanningStage::Called };
     let is_direct = parts.servo.planner == Planner::Direct;
@@ -670,10 +670,10 @@ pub(crate) fn check_done(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) 
     let is_moving = |axis| has_motion(memory, axis) && memory.axis(axis, Chan::ENABLE) != 0;
     if let Some(thread) = caller.thread {
         let has_waited = parts.calls.motions.waits_for(thread, axis);
-        parts.calls.motions.asked(thread, axis, done, caller.at, is_moving);
-        parts.calls.notices.asks(thread, axis);
+        parts.calls.motions.record_poll(thread, axis, done, caller.at, is_moving);
+        parts.calls.notices.record_poll(thread, axis);
         if done == 1 && has_waited {
-            axis_check::arrived(parts, caller, axis);
+            axis_check::check_arrival(parts, caller, axis);
         }
         if done == 0 || has_waited {
             axis_check::speed_changed(parts, caller, axis);

@@ -155,7 +155,7 @@ impl Parts {
     }
 
     /// Exchanges inputs and outputs with one of the Konnects, if there are any; returns whether it did.
-    pub(crate) fn exchange(&mut self, context: &mut TickContext<'_>) -> bool {
+    pub(crate) fn exchange_konnect(&mut self, context: &mut TickContext<'_>) -> bool {
         let has_any = self.io.konnects.has_any();
         if has_any && let Some((board, outputs)) = self.io.konnects.tick(context.memory, context.tick) {
             self.machine.konnect(board, outputs, context.now);
@@ -164,7 +164,7 @@ impl Parts {
     }
 
     /// Notes that something outside has changed a state on which the next tick may depend.
-    pub(crate) fn disturb(&mut self) {
+    pub(crate) fn note_external_change(&mut self) {
         self.servo.cache.invalidate(Invalidation::Anything);
     }
 }

@@ -40,7 +40,7 @@ fn print(parts: &mut Parts, caller: &mut Caller<'_>, message: &[u8], result: i32
     if rest.is_empty() || caller.thread.is_none() {
         return Outcome::Done(result);
     }
-    parts.calls.keep(caller, Continuation::Print { rest, result });
+    parts.calls.store(caller, Continuation::Print { rest, result });
     Outcome::Wait(Wake::Retry)
 }
 

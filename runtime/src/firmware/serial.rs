@@ -38,7 +38,7 @@ fn set_up(parts: &mut Parts, caller: &mut Caller<'_>, divisor: i32) {
 pub(crate) fn enable_rs232_cmds(parts: &mut Parts, caller: &mut Caller<'_>, divisor: i32) -> Outcome<()> {
     let outcome = init_rs232(parts, caller, divisor);
     if matches!(outcome, Outcome::Done(())) {
-        begin(parts, caller.memory);
+        start_service(parts, caller.memory);
     }
     outcome
 }
@@ -46,11 +46,11 @@ pub(crate) fn enable_rs232_cmds(parts: &mut Parts, caller: &mut Caller<'_>, divi
 /// `EnableRS232Cmds` as a script command, which does not wait.
 pub(crate) fn connect(parts: &mut Parts, caller: &mut Caller<'_>, divisor: i32) {
     set_up(parts, caller, divisor);
-    begin(parts, caller.memory);
+    start_service(parts, caller.memory);
 }
 
 /// Empties both rings and starts the service.
-fn begin(parts: &mut Parts, memory: &mut GuestMemory) {
+fn start_service(parts: &mut Parts, memory: &mut GuestMemory) {
     memory.set(P_RS232_REC_IN, memory.locate(RS232_REC_BUF));
     memory.set(P_RS232_REC_OUT, memory.locate(RS232_REC_BUF));
     memory.set(P_RS232_TX_IN, memory.locate(RS232_TX_BUF));
@@ -209,7 +209,7 @@ mod tests {
     fn received_characters_wait_in_their_ring() {
         let mut bench = bench();
         assert!(!bench.is_done("RS232_GetChar", &[]));
-        bench.kernel.parts.io.uart.arrive(b"A\xff", Cycles::default());
+        bench.kernel.parts.io.uart.queue_bytes(b"A\xff", Cycles::default());
         bench.run(10);
         assert_eq!(bench.call_i32("RS232_GetChar", &[]), 65);
         assert_eq!(bench.call_i32("RS232_GetChar", &[]), -1);
@@ -222,7 +222,7 @@ mod tests {
         for (commands, word) in [(0, "lost"), (1, "DoRS232Cmds")] {
             let mut bench = bench();
             bench.memory.set(DO_RS232_CMDS, commands);
-            bench.kernel.parts.io.uart.arrive(&[b'x'; 2100], Cycles::default());
+            bench.kernel.parts.io.uart.queue_bytes(&[b'x'; 2100], Cycles::default());
             bench.run(6100);
             let told: Vec<_> = bench.kernel.parts.out.take_events();
             let [event] = &told[..] else { panic!("{told:?}") };

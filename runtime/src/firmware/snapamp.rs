@@ -25,7 +25,7 @@ fn pins(board: usize) -> impl Iterator<Item = Bit> {
 }
 
 /// Levels of bits as a word, the first one lowest.
-fn levels(parts: &Parts, caller: &Caller<'_>, bits: impl Iterator<Item = Bit>) -> i32 {
+fn level_word(parts: &Parts, caller: &Caller<'_>, bits: impl Iterator<Item = Bit>) -> i32 {
     let levels = bits.map(|bit| parts.level(caller.memory, bit)).enumerate();
     levels.fold(0, |word, (index, level)| word | i32::from(level) << index)
 }
@@ -64,11 +64,12 @@ pub(crate) fn read_snap_amp(parts: &mut Parts, caller: &mut Caller<'_>, address:
     let Some(register) = checked(parts, caller, Function::ReadSnapAmp, address) else { return 0 };
     let Register { board, number } = register;
     match number {
-        PINS => levels(parts, caller, pins(board)),
+        PINS => level_word(parts, caller, pins(board)),
         LEVELS => {
             let first = FIRST_DIFFERENTIAL[board];
             let inputs = (first..first + DIFFERENTIALS).filter_map(Bit::new);
-            levels(parts, caller, inputs) << DIFFERENTIALS | i32::from(parts.io.encoders.snap_levels(board))
+            level_word(parts, caller, inputs) << DIFFERENTIALS
+                | i32::from(parts.io.encoders.snap_levels(board))
         }
         number if ENCODERS.contains(&number) => {
             parts.io.encoders.snap_word(board, number - ENCODERS.start()).into()

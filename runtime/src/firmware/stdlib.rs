@@ -13,7 +13,7 @@ use crate::out::Message;
 use crate::text::{Digits, Precision, digits, float_prefix, integer_prefix, magnitude, place_of_point};
 
 pub(crate) fn malloc(parts: &mut Parts, caller: &mut Caller<'_>, size: u32) -> GuestAddr {
-    parts.calls.heap.take(size).map_or(GuestAddr::NULL, |block| caller.memory.place_of(block))
+    parts.calls.heap.allocate(size).map_or(GuestAddr::NULL, |block| caller.memory.place_of(block))
 }
 
 pub(crate) fn calloc(
@@ -23,7 +23,7 @@ pub(crate) fn calloc(
     size: u32,
 ) -> Result<GuestAddr, TrapKind> {
     let Some((bytes, block)) =
-        count.checked_mul(size).and_then(|bytes| Some((bytes, parts.calls.heap.take(bytes)?)))
+        count.checked_mul(size).and_then(|bytes| Some((bytes, parts.calls.heap.allocate(bytes)?)))
     else {
         return Ok(GuestAddr::NULL);
     };
@@ -47,24 +47,24 @@ pub(crate) fn realloc(
     size: u32,
 ) -> Result<GuestAddr, TrapKind> {
     if size == 0 {
-        parts.calls.heap.give(block);
+        parts.calls.heap.free(block);
         return Ok(GuestAddr::NULL);
     }
     if parts.calls.heap.resize(block, size) {
         return Ok(block);
     }
-    let Some(new) = parts.calls.heap.take(size) else {
+    let Some(new) = parts.calls.heap.allocate(size) else {
         return Ok(GuestAddr::NULL);
     };
     if let Some(old_size) = parts.calls.heap.size(block) {
         caller.memory.copy(new, block, old_size.min(size))?;
-        parts.calls.heap.give(block);
+        parts.calls.heap.free(block);
     }
     Ok(new)
 }
 
 pub(crate) fn free(parts: &mut Parts, caller: &mut Caller<'_>, block: GuestAddr) {
-    if !block.is_null() && !parts.calls.heap.give(block) {
+    if !block.is_null() && !parts.calls.heap.free(block) {
         parts.out.diagnose(caller, Message::NotAllocated { block });
     }
 }
@@ -78,7 +78,7 @@ pub(crate) fn srand(parts: &mut Parts, _: &mut Caller<'_>, seed: u32) {
 }
 
 /// Bytes of white space in front of a number.
-fn blanks(text: &[u8]) -> usize {
+fn leading_blanks(text: &[u8]) -> usize {
     text.iter().take_while(|byte| byte.is_ascii_whitespace()).count()
 }
 
@@ -90,7 +90,7 @@ fn integer(
     reading: IntegerReading,
 ) -> Result<(i64, GuestAddr), TrapKind> {
     let text = caller.memory.read_c_string(string, LONGEST)?;
-    let start = blanks(&text);
+    let start = leading_blanks(&text);
     let (value, used) = integer_prefix(&text[start..], base);
     costs::spend(caller, costs::of_integer(reading, start, &text[start..start + used]));
     let end = if used == 0 { 0 } else { start + used };
@@ -100,7 +100,7 @@ fn integer(
 /// A double in text, and where it ends.
 fn float(caller: &mut Caller<'_>, string: GuestAddr) -> Result<(f64, GuestAddr), TrapKind> {
     let text = caller.memory.read_c_string(string, LONGEST)?;
-    let start = blanks(&text);
+    let start = leading_blanks(&text);
     let (value, used) = float_prefix(&text[start..]);
     costs::spend(caller, costs::of_double(&text[start..start + used]));
     let end = if used == 0 { 0 } else { start + used };
@@ -149,7 +149,7 @@ fn in_base(
     };
     let (value, stopped) = integer(caller, string, base, reading)?;
     let text = caller.memory.read_c_string(string, LONGEST)?;
-    let (is_negative, magnitude) = magnitude(&text[blanks(&text)..], base);
+    let (is_negative, magnitude) = magnitude(&text[leading_blanks(&text)..], base);
     // A `long` of the board's library has 40 bits, of which a program gets the lower 32.
     let most = match reading {
         IntegerReading::Unsigned => (1 << 40) - 1,

@@ -43,7 +43,7 @@ fn write_text(caller: &mut Caller<'_>, address: GuestAddr, mut text: Vec<u8>) ->
 }
 
 /// The address for an index that was found, or null.
-fn found(start: GuestAddr, index: Option<usize>) -> GuestAddr {
+fn address_or_null(start: GuestAddr, index: Option<usize>) -> GuestAddr {
     index.map_or(GuestAddr::NULL, |index| start.offset(index as u32))
 }
 
@@ -59,7 +59,7 @@ fn order(parts: &Parts, a: &[u8], b: &[u8]) -> i32 {
 }
 
 /// Returns the cost of `memcpy` in addition to its 32 cycles (costs.md section 4).
-fn copying(length: u32, is_alike: bool) -> Cycles {
+fn copy_cost(length: u32, is_alike: bool) -> Cycles {
     let length = i64::from(length);
     Cycles::new(match (length, is_alike) {
         (..8, _) => 0,
@@ -77,7 +77,7 @@ pub(crate) fn memcpy(
     length: u32,
 ) -> AddressResult {
     let is_alike = (to.get() ^ from.get()).is_multiple_of(4);
-    caller.spend(copying(length, is_alike));
+    caller.spend(copy_cost(length, is_alike));
     caller.memory.copy(to, from, length)?;
     Ok(to)
 }
@@ -141,7 +141,7 @@ pub(crate) fn memchr(
     length: u32,
 ) -> AddressResult {
     let block = block(caller, start, length)?;
-    Ok(found(start, block.iter().position(|&found| found == byte as u8)))
+    Ok(address_or_null(start, block.iter().position(|&found| found == byte as u8)))
 }
 
 pub(crate) fn strlen(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr) -> Result<u32, TrapKind> {
@@ -224,13 +224,13 @@ pub(crate) fn strncmp(
 pub(crate) fn strchr(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> AddressResult {
     let mut text = text(caller, string)?;
     text.push(0);
-    Ok(found(string, text.iter().position(|&found| found == byte as u8)))
+    Ok(address_or_null(string, text.iter().position(|&found| found == byte as u8)))
 }
 
 pub(crate) fn strrchr(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> AddressResult {
     let mut text = text(caller, string)?;
     text.push(0);
-    Ok(found(string, text.iter().rposition(|&found| found == byte as u8)))
+    Ok(address_or_null(string, text.iter().rposition(|&found| found == byte as u8)))
 }
 
 pub(crate) fn strstr(
@@ -245,7 +245,7 @@ pub(crate) fn strstr(
     }
     let place = string_text.windows(wanted.len()).position(|window| window == wanted);
     caller.spend(Cycles::new(31 * place.unwrap_or(string_text.len()) as i64));
-    Ok(found(string, place))
+    Ok(address_or_null(string, place))
 }
 
 pub(crate) fn strspn(
@@ -275,7 +275,7 @@ pub(crate) fn strpbrk(
     set: GuestAddr,
 ) -> AddressResult {
     let (text, set) = (text(caller, string)?, text(caller, set)?);
-    Ok(found(string, text.iter().position(|byte| set.contains(byte))))
+    Ok(address_or_null(string, text.iter().position(|byte| set.contains(byte))))
 }
 
 /// The next token; the position to continue from is shared by all threads of the board, as in the C library.

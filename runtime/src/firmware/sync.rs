@@ -17,14 +17,14 @@ pub(crate) fn mutex_lock(
     let word: i32 = caller.memory.load(mutex)?;
     let own = i32::from(caller.thread.map_or(0, ThreadId::get));
     let taken = match parts.level.behaviour().mutexes {
-        MutexRule::Owner => owned(word, own),
-        MutexRule::Counted => counted(word, own, caller),
+        MutexRule::Owner => taken_word(word, own),
+        MutexRule::Counted => taken_counted_word(word, own, caller),
     };
     match taken {
         Some(taken) => {
             caller.memory.store(mutex, taken)?;
             if let Some(thread) = caller.thread {
-                parts.calls.locks.taken(HeldLock { thread, lock: mutex, at: caller.at });
+                parts.calls.locks.record_taken(HeldLock { thread, lock: mutex, at: caller.at });
             }
             Ok(Outcome::Done(()))
         }
@@ -36,7 +36,7 @@ pub(crate) fn mutex_lock(
 ///
 /// The word is the owner's number plus one. The board tests the owner's bit by a shift with a six-bit count: a word
 /// that shifts all bits out counts as free.
-fn owned(word: i32, own: i32) -> Option<i32> {
+fn taken_word(word: i32, own: i32) -> Option<i32> {
     const COUNT: i32 = 63;
     let is_taken = word.wrapping_sub(1) & COUNT < 32 && word != own + 1;
     (!is_taken).then_some(own + 1)
@@ -50,8 +50,8 @@ const fn owner_and_count(word: i32) -> (i32, i32) {
 const COUNT_BITS: u32 = 16;
 const COUNT_MASK: i32 = (1 << COUNT_BITS) - 1;
 
-/// As [`owned`], for a word of the owner and a count of its locks.
-fn counted(word: i32, own: i32, caller: &Caller<'_>) -> Option<i32> {
+/// As [`taken_word`], for a word of the owner and a count of its locks.
+fn taken_counted_word(word: i32, own: i32, caller: &Caller<'_>) -> Option<i32> {
     let (owner, count) = owner_and_count(word);
     if owner == own || word == 0 {
         return Some((own << COUNT_BITS) + count + 1);
@@ -72,7 +72,7 @@ pub(crate) fn mutex_unlock(
     caller: &mut Caller<'_>,
     mutex: GuestAddr,
 ) -> Result<(), TrapKind> {
-    parts.calls.locks.freed(mutex);
+    parts.calls.locks.record_freed(mutex);
     if parts.level.behaviour().mutexes == MutexRule::Owner {
         return caller.memory.store(mutex, 0_i32);
     }

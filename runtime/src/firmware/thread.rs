@@ -71,7 +71,7 @@ pub(crate) fn start_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i
         }
         Some(_) => {}
         None => {
-            invalid(parts, caller, Function::StartThread, thread);
+            print_invalid_thread(parts, caller, Function::StartThread, thread);
             stop_board(parts, caller, Function::StartThread);
             return Outcome::End;
         }
@@ -82,7 +82,7 @@ pub(crate) fn start_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i
 /// Pauses a thread at its current position. A thread that names itself continues to the end of its slice.
 pub(crate) fn pause_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) {
     let Some(id) = ThreadId::new(thread) else {
-        return invalid(parts, caller, Function::PauseThread, thread);
+        return print_invalid_thread(parts, caller, Function::PauseThread, thread);
     };
     if caller.thread == Some(id) {
         parts.out.diagnose(caller, Message::PausesItself { thread: id });
@@ -100,7 +100,7 @@ pub(crate) fn resume_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: 
         }
         Some(id) => i32::from(caller.threads.resume(id).is_err()),
         None => {
-            invalid(parts, caller, Function::ResumeThread, thread);
+            print_invalid_thread(parts, caller, Function::ResumeThread, thread);
             1
         }
     }
@@ -111,6 +111,6 @@ pub(crate) fn thread_done(_: &mut Parts, _: &mut Caller<'_>) -> Outcome<()> {
     Outcome::End
 }
 
-fn invalid(parts: &mut Parts, caller: &Caller<'_>, function: Function, thread: i32) {
+fn print_invalid_thread(parts: &mut Parts, caller: &Caller<'_>, function: Function, thread: i32) {
     parts.out.diagnose(caller, Message::NoSuchThread { function, thread });
 }

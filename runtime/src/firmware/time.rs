@@ -50,7 +50,7 @@ pub(crate) fn delay_sec(parts: &mut Parts, caller: &mut Caller<'_>, seconds: f64
     if seconds >= LONG && seconds.is_finite() && seconds % 60.0 != 0.0 && caller.woken.is_none() {
         parts.out.diagnose(caller, Message::LongDelay { function: Function::Delay_sec, seconds });
     }
-    _ = float_bits::notice(parts, caller, Function::Delay_sec, seconds);
+    _ = float_bits::check(parts, caller, Function::Delay_sec, seconds);
     delay(parts, caller, seconds)
 }
 

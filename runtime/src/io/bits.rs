@@ -112,7 +112,7 @@ pub(crate) fn write_bit(
             if !kanalog::is_served(&io.fpga, memory) {
                 out.remark(now, Message::KanalogOff { bit });
             }
-            if let Some(group) = io.outputs.changed(bit, level) {
+            if let Some(group) = io.outputs.group_with(bit, level) {
                 io.outputs.store(group);
                 group.put_out(&mut io.pins, now);
             }
@@ -121,7 +121,7 @@ pub(crate) fn write_bit(
         _ => {
             if let Some((word, mask)) = memory_bit(bit, kind) {
                 change(memory, word, mask, level);
-                changes::sweep(&mut io.pins.changes, memory, now);
+                changes::scan_virtual_bits(&mut io.pins.changes, memory, now);
             }
         }
     }

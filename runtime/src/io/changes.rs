@@ -18,8 +18,8 @@ pub(crate) fn switch_on(changes: &mut Changes, memory: &GuestMemory) {
 }
 
 /// Finds the virtual bits that have changed.
-pub(crate) fn sweep(changes: &mut Changes, memory: &GuestMemory, at: Cycles) {
-    changes.sweep(|index| word(memory, index), at);
+pub(crate) fn scan_virtual_bits(changes: &mut Changes, memory: &GuestMemory, at: Cycles) {
+    changes.scan_virtual_bits(|index| word(memory, index), at);
 }
 
 /// A word of virtual bits: the plain ones, then the extended ones.
@@ -41,7 +41,7 @@ mod tests {
         memory.set(VIRTUAL_BITS, 0x1_8001);
         memory.set(VIRTUAL_BITS_EX.element(1), 2);
         for expect in [vec![(48, true), (63, true), (1057, true)], vec![]] {
-            sweep(&mut changes, &memory, Cycles::default());
+            scan_virtual_bits(&mut changes, &memory, Cycles::default());
             let told: Vec<_> = changes.take().iter().map(|change| (change.bit.get(), change.level)).collect();
             assert_eq!(told, expect);
         }

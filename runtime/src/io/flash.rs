@@ -34,7 +34,7 @@ const WORD_LIMIT: i32 = 32_768;
 const _: () = assert!(SAVED_IRAM + IRAM.size <= SAVED_PROGRAMS && SAVED_PROGRAMS + PROGRAMS <= USER);
 
 /// A place in flash memory.
-const fn at(offset: u32) -> GuestAddr {
+const fn flash_address(offset: u32) -> GuestAddr {
     FLASH.base.offset(offset)
 }
 
@@ -48,13 +48,13 @@ fn copy(memory: &mut GuestMemory, to: GuestAddr, from: GuestAddr, length: u32) {
 /// Saves the start state of the board; `texts` are the texts of the loaded programs.
 pub(crate) fn save(memory: &mut GuestMemory, texts: impl Fn(ThreadId) -> Option<Range<GuestAddr>>) {
     for (offset, byte) in (0..).zip(MAGIC) {
-        memory.poke(at(offset), *byte);
+        memory.poke(flash_address(offset), *byte);
     }
     for (thread, offset) in ThreadId::all().zip((TEXTS..).step_by(4)) {
-        memory.poke(at(offset), texts(thread).map_or(0, |text| text.end.get()));
+        memory.poke(flash_address(offset), texts(thread).map_or(0, |text| text.end.get()));
     }
-    copy(memory, at(SAVED_IRAM), IRAM.base, IRAM.size);
-    copy(memory, at(SAVED_PROGRAMS), GuestAddr::new(PROGRAM_BASE), PROGRAMS);
+    copy(memory, flash_address(SAVED_IRAM), IRAM.base, IRAM.size);
+    copy(memory, flash_address(SAVED_PROGRAMS), GuestAddr::new(PROGRAM_BASE), PROGRAMS);
 }
 
 /// Returns whether flash holds a saved image.
@@ -66,13 +66,13 @@ pub(crate) fn is_saved(memory: &GuestMemory) -> bool {
 
 /// Restores the saved state.
 pub(crate) fn restore(memory: &mut GuestMemory) {
-    copy(memory, IRAM.base, at(SAVED_IRAM), IRAM.size);
-    copy(memory, GuestAddr::new(PROGRAM_BASE), at(SAVED_PROGRAMS), PROGRAMS);
+    copy(memory, IRAM.base, flash_address(SAVED_IRAM), IRAM.size);
+    copy(memory, GuestAddr::new(PROGRAM_BASE), flash_address(SAVED_PROGRAMS), PROGRAMS);
 }
 
 /// The text of a saved program.
 pub(crate) fn text(memory: &GuestMemory, thread: ThreadId) -> Option<Range<GuestAddr>> {
-    let end: u32 = memory.peek(at(TEXTS + 4 * thread.index() as u32));
+    let end: u32 = memory.peek(flash_address(TEXTS + 4 * thread.index() as u32));
     let base = program_base(thread);
     (end > base.get() && end <= PROGRAM_BASE + PROGRAMS).then(|| base..GuestAddr::new(end))
 }
@@ -105,12 +105,12 @@ mod tests {
         for (offset, expect) in
             [(0, false), (USER - BLOCK, false), (USER, true), (USER + 2, false), (USER + 15 * BLOCK, true)]
         {
-            assert_eq!(program(&mut memory, at(offset), &[1, 2, 3]), expect, "{offset:#x}");
+            assert_eq!(program(&mut memory, flash_address(offset), &[1, 2, 3]), expect, "{offset:#x}");
         }
-        assert_eq!(memory.peek::<u32>(at(USER)), 0xFF03_0201);
-        assert!(program(&mut memory, at(USER), &[7]));
-        assert_eq!(memory.peek::<u32>(at(USER)), 0xFFFF_FF07);
-        assert!(!program(&mut memory, at(USER), &[0; BLOCK as usize + 1]));
+        assert_eq!(memory.peek::<u32>(flash_address(USER)), 0xFF03_0201);
+        assert!(program(&mut memory, flash_address(USER), &[7]));
+        assert_eq!(memory.peek::<u32>(flash_address(USER)), 0xFFFF_FF07);
+        assert!(!program(&mut memory, flash_address(USER), &[0; BLOCK as usize + 1]));
         assert_eq!((length(-1), length(32_768), length(32_769)), (None, Some(65_536), None));
     }
 }

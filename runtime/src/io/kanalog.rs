@@ -45,7 +45,7 @@ pub(crate) struct Group {
 
 impl Outputs {
     /// The group of an output with another level of it; `None` for any other bit.
-    pub(crate) fn changed(&self, bit: Bit, level: bool) -> Option<Group> {
+    pub(crate) fn group_with(&self, bit: Bit, level: bool) -> Option<Group> {
         let (index, mask) = place(bit)?;
         let levels = self.groups[usize::from(index)];
         Some(Group { index, levels: if level { levels | mask } else { levels & !mask } })

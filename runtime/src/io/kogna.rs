@@ -124,7 +124,7 @@ impl Kogna {
 
     /// Reads a register of a fast PWM channel; `None` for an unknown register.
     pub(crate) fn read(&self, address: GuestAddr, size: AccessSize) -> Option<u32> {
-        let register = known(address)?;
+        let register = register_offset(address)?;
         let half = |offset| u32::from(self.hrpwm.get(&(register + offset)).copied().unwrap_or(0));
         Some(match size {
             AccessSize::Word => half(0) | half(2) << 16,
@@ -134,7 +134,7 @@ impl Kogna {
 
     /// Writes a register of a fast PWM channel; `None` for an unknown register.
     pub(crate) fn write(&mut self, address: GuestAddr, size: AccessSize, value: u32) -> Option<()> {
-        let register = known(address)?;
+        let register = register_offset(address)?;
         self.hrpwm.insert(register, value as u16);
         if size == AccessSize::Word {
             self.hrpwm.insert(register + 2, (value >> 16) as u16);
@@ -144,7 +144,7 @@ impl Kogna {
 }
 
 /// The low part of the address of a known register.
-fn known(address: GuestAddr) -> Option<u32> {
+fn register_offset(address: GuestAddr) -> Option<u32> {
     let register = address.get() & 0xFFFF;
     HRPWM_REGISTERS.contains(&register).then_some(register)
 }

@@ -66,13 +66,13 @@ impl Konnects {
     }
 
     /// The word that a board gives.
-    fn given(&self, board: KonnectBoard) -> u32 {
+    fn input_word(&self, board: KonnectBoard) -> u32 {
         if self.is_present(board) { self.inputs.get(&board).copied().unwrap_or(0) } else { 0 }
     }
 
     /// The level of an input of a board.
     pub(crate) fn input(&self, board: KonnectBoard, input: u8) -> bool {
-        self.given(board) >> input & 1 != 0
+        self.input_word(board) >> input & 1 != 0
     }
 
     /// Empties the list.
@@ -109,11 +109,11 @@ impl Konnects {
         let count = self.services.len() as u64;
         let turn = tick.get().checked_rem(count)?;
         let service = *self.services.get(turn as usize)?;
-        memory.poke(service.inputs, self.given(service.board));
+        memory.poke(service.inputs, self.input_word(service.board));
         if !self.is_present(service.board) {
             return None;
         }
-        let outputs = taken(memory, &service);
+        let outputs = output_bits(memory, &service);
         (self.outputs.insert(service.board, outputs) != Some(outputs)).then_some((service.board, outputs))
     }
 
@@ -125,14 +125,14 @@ impl Konnects {
     /// Returns whether no exchange changes anything.
     pub(crate) fn is_settled(&self, memory: &GuestMemory) -> bool {
         self.services.iter().all(|service| {
-            memory.peek::<u32>(service.inputs) == self.given(service.board)
+            memory.peek::<u32>(service.inputs) == self.input_word(service.board)
                 && (!self.is_present(service.board)
-                    || self.outputs.get(&service.board) == Some(&taken(memory, service)))
+                    || self.outputs.get(&service.board) == Some(&output_bits(memory, service)))
         })
     }
 }
 
 /// Returns the bits that a board takes from its output word.
-fn taken(memory: &GuestMemory, service: &Service) -> u16 {
+fn output_bits(memory: &GuestMemory, service: &Service) -> u16 {
     memory.peek::<u32>(service.outputs) as u16
 }

@@ -24,7 +24,7 @@ impl Machine {
         now: Cycles,
     ) {
         let input = self.turned_input(memory, input);
-        let shaft = self.wiring.shaft(memory, input);
+        let shaft = self.wiring.coupled_axis(memory, input);
         let unit = shaft.and_then(|axis| {
             let gain = f64::from(memory.axis(axis, Chan::INPUT_GAIN0));
             Some((axis, self.loads[axis].unit(gain)?))
@@ -59,11 +59,11 @@ impl Machine {
         // Switches, sources and devices depend on the load that turns with it.
         let is_seen = |axis: AxisId| {
             let mode = memory.axis(axis, Chan::INPUT_MODE);
-            self.has_mechanics() && self.mechanics.sees(axis)
+            self.has_mechanics() && self.mechanics.depends_on(axis)
                 || ![InputMode::Encoder.get(), InputMode::None.get()].contains(&mode)
         };
         let is_read = memory.axes().iter().any(|axis| reads(memory, axis, input));
-        if !is_read && !self.wiring.shaft(memory, input).is_some_and(is_seen) {
+        if !is_read && !self.wiring.coupled_axis(memory, input).is_some_and(is_seen) {
             out.remark(now, Message::EncoderUnread { input });
         }
     }

@@ -173,7 +173,7 @@ impl Mechanics {
     }
 
     /// Returns whether an axis trips a contact, or an analog input depends on it.
-    pub(super) fn sees(&self, axis: AxisId) -> bool {
+    pub(super) fn depends_on(&self, axis: AxisId) -> bool {
         let follows = |analog: &Analog| matches!(analog.source, AnalogSource::Follows { axis: seen, .. } if seen == axis);
         self.has_contacts(axis) || self.analog.iter().any(follows)
     }
@@ -319,7 +319,7 @@ impl Machine {
     }
 
     /// The output that switches the same motor to the other direction.
-    pub(crate) fn opposite(&self, bit: Bit) -> Option<Bit> {
+    pub(crate) fn opposite_output(&self, bit: Bit) -> Option<Bit> {
         let spindles = self.mechanics.spindles.iter().filter_map(|turning| match turning.spindle.drive {
             SpindleDrive::Bits { cw, ccw } => Some((cw, ccw)),
             SpindleDrive::Axis(_) | SpindleDrive::Dac(_) => None,
@@ -376,7 +376,7 @@ impl Machine {
 
     fn turn_handwheels(&mut self, out: &mut Out, memory: &GuestMemory, now: Cycles) {
         let time = now.get() as f64 / Cycles::PER_SECOND.get() as f64;
-        let way = |turn: &[f64; 3]| turned(turn, time) - turned(turn, time - TIMEBASE);
+        let way = |turn: &[f64; 3]| turned_counts(turn, time) - turned_counts(turn, time - TIMEBASE);
         let ends = |&[start, _, duration]: &[f64; 3]| (time - TIMEBASE..time).contains(&(start + duration));
         for index in 0..self.mechanics.handwheels.len() {
             let wheel = &self.mechanics.handwheels[index];
@@ -394,7 +394,7 @@ impl Machine {
 
     fn turn_spindles(&mut self, io: &Io, memory: &GuestMemory) {
         for TurningSpindle { spindle, speed } in &mut self.mechanics.spindles {
-            let free = spindle.full_scale_rps * fraction(io, memory, spindle);
+            let free = spindle.full_scale_rps * drive_fraction(io, memory, spindle);
             let lost = (spindle.droop_rps * spindle.load).min(free.abs());
             let target = free - libm::copysign(lost, free);
             *speed = target + (*speed - target) * libm::exp(-TIMEBASE / spindle.tau_s);
@@ -420,13 +420,13 @@ impl Machine {
             for table in &mut self.mechanics.tables {
                 table.follow(self.loads[table.axis].load);
             }
-            self.rack();
+            self.check_racking();
             self.show(io, now);
         }
     }
 
     /// Notes a gantry whose sides are too far apart.
-    fn rack(&mut self) {
+    fn check_racking(&mut self) {
         for gantry in &self.mechanics.gantries {
             let [a, b] = gantry.axes.map(|axis| self.loads[axis].load);
             let apart = (a - b).abs();
@@ -472,7 +472,7 @@ fn table(tables: &[Table], axis: AxisId) -> Option<f64> {
 }
 
 /// The counts of a move that are done at a time.
-fn turned(&[start, counts, duration]: &[f64; 3], time: f64) -> f64 {
+fn turned_counts(&[start, counts, duration]: &[f64; 3], time: f64) -> f64 {
     if time < start {
         0.0
     } else if time >= start + duration {
@@ -483,7 +483,7 @@ fn turned(&[start, counts, duration]: &[f64; 3], time: f64) -> f64 {
 }
 
 /// Returns the drive of a spindle as a fraction of full speed, −1 to 1.
-fn fraction(io: &Io, memory: &GuestMemory, spindle: &Spindle) -> f64 {
+fn drive_fraction(io: &Io, memory: &GuestMemory, spindle: &Spindle) -> f64 {
     const FULL: f64 = 2047.0;
     let dac = |channel: usize| f64::from(dac_value(memory, channel)) / FULL;
     match spindle.drive {

@@ -87,8 +87,8 @@ impl Loads {
     }
 
     /// Another constant load pulls at the motor of an axis.
-    pub(crate) fn pull(&mut self, axis: AxisId, speed: f64) {
-        self[axis].pull(speed);
+    pub(crate) fn set_load(&mut self, axis: AxisId, speed: f64) {
+        self[axis].set_load(speed);
         self.is_pushed = true;
     }
 
@@ -153,7 +153,7 @@ impl Machine {
         Bit::all().filter(|&bit| device.watches(bit)).for_each(|bit| io.pins.watch(bit));
         io.uart.listen();
         let high = Bit::all().filter(|&bit| bit_state(io, memory, bit).0).collect::<Vec<_>>();
-        let (mut outside, _) = self.outside(io);
+        let (mut outside, _) = self.device_context(io);
         for bit in high {
             device.edge(BitChange { at: now, bit, level: true }, &mut outside);
         }
@@ -163,7 +163,10 @@ impl Machine {
     }
 
     /// Returns the parts that devices reach, and the devices.
-    fn outside<'a>(&'a mut self, io: &'a mut Io) -> (DeviceContext<'a>, &'a mut [Box<dyn AttachedDevice>]) {
+    fn device_context<'a>(
+        &'a mut self,
+        io: &'a mut Io,
+    ) -> (DeviceContext<'a>, &'a mut [Box<dyn AttachedDevice>]) {
         let outside = DeviceContext {
             pins: &mut io.pins,
             kanalog: &mut io.kanalog,
@@ -182,7 +185,7 @@ impl Machine {
         // Devices that respond to each other endlessly do so at a single instant, where the exchange is cut off.
         for _ in 0..EDGES_AT_ONCE {
             let Some(change) = io.pins.changes.next_unseen() else { return };
-            let (mut outside, devices) = self.outside(io);
+            let (mut outside, devices) = self.device_context(io);
             for device in devices {
                 device.edge(change, &mut outside);
             }
@@ -202,16 +205,16 @@ impl Machine {
     ) -> Vec<SentByte> {
         let mut sent = Vec::new();
         while let Some((at, byte)) = io.uart.take_sent(now) {
-            let (mut outside, devices) = self.outside(io);
+            let (mut outside, devices) = self.device_context(io);
             for device in devices {
                 device.sent(byte, at, &mut outside);
             }
             if hears_uart {
-                out.tell(at, EventKind::UartSent(byte));
+                out.emit(at, EventKind::UartSent(byte));
             }
             sent.push(SentByte { at, byte });
         }
-        let (mut outside, devices) = self.outside(io);
+        let (mut outside, devices) = self.device_context(io);
         for device in devices {
             device.tick(now, &mut outside);
         }

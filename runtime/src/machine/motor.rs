@@ -79,34 +79,34 @@ impl Motor {
     /// The velocity a tick later; `own_cycles` is the axis' own value of its cycles.
     pub(crate) fn advance(&self, velocity: f64, applied: AmplifierSignal, load: f64, own_cycles: f64) -> f64 {
         match applied {
-            AmplifierSignal::Pwm(counts) => self.approach(velocity, self.ku.unwrap_or(PWM_KU) * counts),
-            AmplifierSignal::Dac(counts) => self.approach(velocity, self.ku.unwrap_or(DAC_KU) * counts),
+            AmplifierSignal::Pwm(counts) => self.accelerate(velocity, self.ku.unwrap_or(PWM_KU) * counts),
+            AmplifierSignal::Dac(counts) => self.accelerate(velocity, self.ku.unwrap_or(DAC_KU) * counts),
             AmplifierSignal::Vector(magnitude, angle) => {
                 let lead = angle - self.angle(load, self.cycles(own_cycles));
                 let torque = magnitude * libm::sin(TAU * (lead - libm::floor(lead)));
-                self.approach(velocity, self.ku.unwrap_or(PWM_KU) * torque)
+                self.accelerate(velocity, self.ku.unwrap_or(PWM_KU) * torque)
             }
             AmplifierSignal::Current(counts) => {
                 let pushed = velocity * self.viscous + self.ka * counts * TIMEBASE;
-                self.rub(velocity, pushed, self.ka * counts == 0.0)
+                self.apply_friction(velocity, pushed, self.ka * counts == 0.0)
             }
         }
     }
 
     /// Speeds up towards `target`, of which friction takes its part.
-    fn approach(&self, velocity: f64, target: f64) -> f64 {
+    fn accelerate(&self, velocity: f64, target: f64) -> f64 {
         let target = target + self.pull;
         if velocity == 0.0 && target.abs() <= self.friction {
             return 0.0;
         }
         let direction = if velocity == 0.0 { target } else { velocity };
         let aim = target - libm::copysign(self.friction, direction);
-        self.rub(velocity, aim + (velocity - aim) * self.decay, target.abs() <= self.friction)
+        self.apply_friction(velocity, aim + (velocity - aim) * self.decay, target.abs() <= self.friction)
     }
 
     /// Applies friction, which stops but does not reverse the motion; crawling counts as standing once the motor is not
     /// driven.
-    fn rub(&self, before: f64, after: f64, is_undriven: bool) -> f64 {
+    fn apply_friction(&self, before: f64, after: f64, is_undriven: bool) -> f64 {
         const CRAWL: f64 = 1e-6;
         let reverses = before * after < 0.0;
         if is_undriven && (reverses && self.friction > 0.0 || after.abs() < CRAWL) { 0.0 } else { after }

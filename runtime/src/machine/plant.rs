@@ -277,7 +277,7 @@ impl Plant {
     }
 
     /// Another constant load pulls at the motor.
-    pub(super) fn pull(&mut self, speed: f64) {
+    pub(super) fn set_load(&mut self, speed: f64) {
         self.build.motor.load_with(speed);
     }
 

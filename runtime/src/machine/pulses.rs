@@ -53,7 +53,7 @@ const QUICK: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 100);
 
 impl InputHistory {
     /// The pulse that has begun and ended since a read.
-    fn missed(&self, before: &LastRead, level: bool, now: Cycles) -> Option<MissedPulse> {
+    fn missed_pulse(&self, before: &LastRead, level: bool, now: Cycles) -> Option<MissedPulse> {
         /// Shorter pulses are bounces, or meant for other hardware.
         const SHORTEST: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 1000);
         /// A program that reads less often does not poll.
@@ -72,7 +72,7 @@ impl InputHistory {
 
     /// Handles the first fall of an input that has been on from the start, as in a safety chain, while the loop that
     /// has always watched it waits for something else.
-    fn late(&self, before: &LastRead, level: bool, now: Cycles) -> Option<ReadNotice> {
+    fn late_read(&self, before: &LastRead, level: bool, now: Cycles) -> Option<ReadNotice> {
         const WATCHED: u32 = 100;
         const LATE: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 2);
         let fell = self.changes[0];
@@ -116,8 +116,8 @@ impl Pulses {
         });
         driven.read = Some(LastRead { site, at: now, level, count: driven.count, reads, quick });
         let before = before?;
-        let missed = driven.missed(&before, level, now).map(ReadNotice::Missed);
-        missed.or_else(|| driven.late(&before, level, now))
+        let missed = driven.missed_pulse(&before, level, now).map(ReadNotice::Missed);
+        missed.or_else(|| driven.late_read(&before, level, now))
     }
 
     /// The last pulse at an input, which ended before an instant: its beginning and its end.

@@ -44,11 +44,11 @@ impl Table {
         match self.coupling {
             // The load pushes the table where the play ends.
             Coupling::Play(width) => self.place = self.place.clamp(load - width / 2.0, load + width / 2.0),
-            Coupling::Spring(spring) => self.swing(load, spring),
+            Coupling::Spring(spring) => self.step_spring(load, spring),
         }
     }
 
-    fn swing(&mut self, load: f64, Spring { hz, damping }: Spring) {
+    fn step_spring(&mut self, load: f64, Spring { hz, damping }: Spring) {
         let omega = TAU * hz;
         let pull = omega * omega * (load - self.place);
         self.velocity += TIMEBASE * (pull - 2.0 * damping * omega * self.velocity);

@@ -6,7 +6,7 @@ use kmotiondef::structs::Chan;
 use kmotiondef::AxisId;
 use kmotiondef::limits::TIMEBASE;
 
-use crate::board::connect::{install, play};
+use crate::board::connect::{connect_surroundings, install};
 use crate::board::machine_file::MachineFile;
 use crate::testing::TestBench;
 use crate::views::TypedAccess;
@@ -19,7 +19,7 @@ fn bench(machine: &str) -> TestBench {
     let machine = MachineFile::parse(machine).unwrap_or_else(|error| panic!("{}: {error}", error.line));
     let mut bench = TestBench::new();
     install(&mut bench.kernel.parts, &machine);
-    play(&mut bench.kernel.parts, &machine, &mut bench.memory);
+    connect_surroundings(&mut bench.kernel.parts, &machine, &mut bench.memory);
     bench
 }
 

@@ -70,7 +70,7 @@ impl Wiring {
     }
 
     /// The axis whose load turns the encoder read by `axis`.
-    pub(crate) fn turns(&self, memory: &GuestMemory, axis: AxisId) -> Option<AxisId> {
+    pub(crate) fn driving_axis(&self, memory: &GuestMemory, axis: AxisId) -> Option<AxisId> {
         let channel = memory.axis(axis, Chan::INPUT_CHAN0);
         let input = usize::try_from(channel).ok();
         // No board has an input of such a number.
@@ -108,7 +108,7 @@ impl Wiring {
     /// Returns whether the encoder that an axis reads is turned only by hand, not by a load.
     pub(crate) fn is_hand_alone(&self, memory: &GuestMemory, axis: AxisId) -> bool {
         self.reads_hand(memory, axis)
-            && self.shaft(memory, memory.axis(axis, Chan::INPUT_CHAN0) as usize).is_none()
+            && self.coupled_axis(memory, memory.axis(axis, Chan::INPUT_CHAN0) as usize).is_none()
     }
 
     /// Returns whether the machine file describes the encoder of an axis.
@@ -120,7 +120,7 @@ impl Wiring {
     ///
     /// It is the axis that the machine file connects there, or an axis with its own encoder there. A load without a
     /// description, whose axis has no encoder, leaves its input to a hand wheel.
-    pub(crate) fn shaft(&self, memory: &GuestMemory, input: usize) -> Option<AxisId> {
+    pub(crate) fn coupled_axis(&self, memory: &GuestMemory, input: usize) -> Option<AxisId> {
         let axes = || memory.axes().iter();
         if let Some(axis) = axes().find(|axis| self.input(*axis) == Some(input)) {
             return Some(axis).filter(|axis| !self.has_none[axis.index()]);
@@ -197,7 +197,11 @@ mod tests {
             [(0, 3, Some(0)), (0, 0, None), (1, 1, Some(1)), (1, 4, None), (2, 5, Some(2))]
         {
             memory.set_axis(axis(reader), Chan::INPUT_CHAN0, input);
-            assert_eq!(wiring.turns(&memory, axis(reader)), expect.map(axis), "axis {reader} on {input}");
+            assert_eq!(
+                wiring.driving_axis(&memory, axis(reader)),
+                expect.map(axis),
+                "axis {reader} on {input}"
+            );
         }
     }
 }

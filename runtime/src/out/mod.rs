@@ -60,7 +60,7 @@ impl Default for Out {
 
 impl Out {
     /// Records an event.
-    pub(crate) fn tell(&mut self, at: Cycles, kind: EventKind) {
+    pub(crate) fn emit(&mut self, at: Cycles, kind: EventKind) {
         if let (EventKind::ConsoleLine(line), Some(lines)) = (&kind, &mut self.lines) {
             lines.push_back((at, line.clone()));
         }
@@ -76,7 +76,7 @@ impl Out {
     }
 
     /// Switches remarks of this code off.
-    pub(crate) fn silence(&mut self, code: &'static str) {
+    pub(crate) fn disable_remark(&mut self, code: &'static str) {
         self.unwanted.insert(code);
     }
 
@@ -102,7 +102,7 @@ impl Out {
         let is_wanted = (self.hints || !is_hint) && !self.unwanted.contains(message.code());
         let is_new = |key| self.made.insert((message.code(), key));
         if is_wanted && message.once().is_none_or(is_new) {
-            self.tell(at, EventKind::Remark(Remark { message, speaker, place }));
+            self.emit(at, EventKind::Remark(Remark { message, speaker, place }));
         }
     }
 

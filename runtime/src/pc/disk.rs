@@ -215,7 +215,7 @@ impl Disk {
     }
 
     /// The answer that has arrived by now.
-    fn arrived(&mut self, now: Cycles) -> Option<FileAnswer> {
+    fn arrived_answer(&mut self, now: Cycles) -> Option<FileAnswer> {
         let is_due = self.answers.front().is_some_and(|(due, _)| *due <= now);
         if is_due { self.answers.pop_front().map(|(_, answer)| answer) } else { None }
     }
@@ -236,7 +236,7 @@ impl Disk {
     /// Puts an answer that has arrived into the board's line buffer; returns whether there was one.
     #[inline]
     pub(crate) fn slice(&mut self, context: &mut TickContext<'_>) -> bool {
-        let Some(answer) = self.arrived(context.now) else { return false };
+        let Some(answer) = self.arrived_answer(context.now) else { return false };
         match answer {
             FileAnswer::Line(line) => deliver(context.memory, &line),
             FileAnswer::End => context.memory.set(READ_DISK_BUFFER_STATUS, NO_MORE),

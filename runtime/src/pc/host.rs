@@ -118,7 +118,7 @@ impl Host {
         if !self.is_connected || self.unanswered != code || !self.is_for_person(code) {
             return None;
         }
-        Some(opened(memory, code))
+        Some(open_box_of(memory, code))
     }
 
     /// Returns whether a request opens a box that a person still has to answer.
@@ -134,7 +134,7 @@ impl Host {
     /// Shows the box of a request that waits for a person; returns its text the first time.
     pub(super) fn show_box(&mut self, memory: &GuestMemory, code: i32) -> Option<String> {
         let is_new = std::mem::replace(&mut self.unanswered, code) != code;
-        is_new.then(|| opened(memory, code).shown())
+        is_new.then(|| open_box_of(memory, code).shown())
     }
 
     /// No request waits any more.
@@ -200,7 +200,7 @@ fn doubles(memory: &GuestMemory, index: i32, count: usize) -> Option<GuestAddr> 
 /// Serves the primary thread's slice; returns whether an answer was stored.
 pub(crate) fn slice(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>) -> bool {
     if !host.is_connected {
-        miss(host, out, context);
+        report_missing_pc(host, out, context);
         return false;
     }
     if host.until_poll > 0 {
@@ -216,11 +216,11 @@ pub(crate) fn slice(host: &mut Host, out: &mut Out, context: &mut TickContext<'_
     } else if host.answers.silent.contains(&code) {
         if host.unanswered != code {
             host.unanswered = code;
-            say(out, context, format!("request {code} gets no answer"));
+            emit_remark_text(out, context, format!("request {code} gets no answer"));
         }
     } else if host.is_for_person(code) {
         if let Some(text) = host.show_box(context.memory, code) {
-            say(out, context, text);
+            emit_remark_text(out, context, text);
         }
     } else {
         host.unanswered = 0;
@@ -233,7 +233,7 @@ pub(crate) fn slice(host: &mut Host, out: &mut Out, context: &mut TickContext<'_
 }
 
 /// The box that a request opens.
-fn opened(memory: &GuestMemory, code: i32) -> OpenBox {
+fn open_box_of(memory: &GuestMemory, code: i32) -> OpenBox {
     let text = string(memory, memory.get(data(1)));
     if requests::action(code) == Some(PcAction::InputBox) {
         OpenBox::Input { text }
@@ -243,7 +243,7 @@ fn opened(memory: &GuestMemory, code: i32) -> OpenBox {
 }
 
 /// Says of a request that waits for a PC which is not there that it does.
-fn miss(host: &mut Host, out: &mut Out, context: &TickContext<'_>) {
+fn report_missing_pc(host: &mut Host, out: &mut Out, context: &TickContext<'_>) {
     let code = context.memory.get(data(0));
     if code <= 0 || code != host.unanswered {
         host.unanswered = code.max(0);
@@ -258,10 +258,10 @@ fn miss(host: &mut Host, out: &mut Out, context: &TickContext<'_>) {
 pub(super) fn answer(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, code: i32) -> i32 {
     let parameters: [i32; 3] = std::array::from_fn(|index| context.memory.get(data(index + 1)));
     if let Some(text) = requests::shown(code, parameters[0]) {
-        say(out, context, text);
+        emit_remark_text(out, context, text);
     }
     if let Some(&result) = host.answers.results.get(&code) {
-        say(out, context, format!("request {code} is answered {result}"));
+        emit_remark_text(out, context, format!("request {code} is answered {result}"));
         return result;
     }
     if matches!(requests::action(code), Some(PcAction::MessageBox | PcAction::Mdi | PcAction::InputBox)) {
@@ -284,7 +284,7 @@ pub(super) fn answer(host: &mut Host, out: &mut Out, context: &mut TickContext<'
                 }
                 _ => format!("{number:?}, the float in persist.UserData[101], is not from 0.001 to 1000"),
             };
-            say(out, context, format!("feed override: refused, as {held}"));
+            emit_remark_text(out, context, format!("feed override: refused, as {held}"));
             return INVALID;
         }
         Some(PcAction::Override(rate, change)) => set_override(out, context, (rate, change), number),
@@ -306,8 +306,8 @@ pub(super) fn answer(host: &mut Host, out: &mut Out, context: &mut TickContext<'
     DONE
 }
 
-fn say(out: &mut Out, context: &TickContext<'_>, text: String) {
-    out.tell(context.now, EventKind::Host(text));
+fn emit_remark_text(out: &mut Out, context: &TickContext<'_>, text: String) {
+    out.emit(context.now, EventKind::Host(text));
 }
 
 /// Stops threads 2 to 7 and coordinated motion.
@@ -337,7 +337,7 @@ fn set_override(out: &mut Out, context: &mut TickContext<'_>, (rate, change): (R
             "rapid"
         }
     };
-    say(out, context, format!("{name} override {value}"));
+    emit_remark_text(out, context, format!("{name} override {value}"));
 }
 
 /// Tells the board whether a job runs.
@@ -397,7 +397,7 @@ fn message_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, [o
         Some(name) => format!(" ({name}, {pressed})"),
         None => format!(" ({pressed})"),
     };
-    say(out, context, format!("message box: {text}{answer}"));
+    emit_remark_text(out, context, format!("message box: {text}{answer}"));
     context.memory.set(data(3), pressed);
 }
 
@@ -406,7 +406,7 @@ fn input_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offs
     let prompt = string(context.memory, offset);
     let typed = host.answers.boxes.type_in().unwrap_or(Some(0.0));
     let answer = typed.map_or_else(|| "cancel".to_owned(), |number| number.to_string());
-    say(out, context, format!("input box: {prompt} ({answer})"));
+    emit_remark_text(out, context, format!("input box: {prompt} ({answer})"));
     context.memory.set(data(2), typed.unwrap_or(0.0).to_bits().cast_signed());
     context.memory.set(data(3), i32::from(typed.is_none()));
 }
@@ -424,7 +424,7 @@ fn mdi(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offset: i3
         }
         Err(gcode::UnsupportedText(text)) => format!(": {text}; no variable is changed"),
     };
-    say(out, context, format!("MDI: {line}{answer}{trouble}"));
+    emit_remark_text(out, context, format!("MDI: {line}{answer}{trouble}"));
     context.memory.set(data(2), result.unwrap_or(0));
 }
 

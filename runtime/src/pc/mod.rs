@@ -56,7 +56,7 @@ impl Pc {
     /// Takes a console line. Requests for files are handled here; other lines are shown.
     pub(crate) fn take_line(&mut self, out: &mut Out, line: Vec<u8>, now: Cycles) {
         if !self.host.is_connected() || !self.disk.take(out, &line, now) {
-            out.tell(now, EventKind::ConsoleLine(line));
+            out.emit(now, EventKind::ConsoleLine(line));
         }
     }
 

@@ -134,7 +134,7 @@ impl Cache {
     /// been written to.
     #[inline]
     pub(super) fn is_still(&self, memory: &GuestMemory, is_touched: bool) -> bool {
-        self.still.lasts(memory, is_touched)
+        self.still.is_still(memory, is_touched)
     }
 
     /// A tick of the axes is computed.

@@ -6,7 +6,7 @@
 
 use kmotiondef::limits::TIMEBASE;
 
-use super::profile::{FOREVER, Limits, Mode, MotionState, Path, Point, lead};
+use super::profile::{FOREVER, Limits, Mode, MotionState, Path, Point, lead_in};
 
 /// Halvings of the range of a move's peak speed: the full resolution of a double.
 const HALVINGS: usize = 120;
@@ -14,8 +14,8 @@ const HALVINGS: usize = 120;
 /// A move to `to`; it slows down with `decel`.
 pub(crate) fn move_direct(start: Point, to: f64, limits: &Limits, decel: f64) -> Vec<MotionState> {
     let is_resting = start.v == 0.0 && start.a == 0.0;
-    let begin = if is_resting { Path::exact(start) } else { lead(start).exactly() };
-    let mut states = joined(directly(begin, to, limits, decel));
+    let begin = if is_resting { Path::exact(start) } else { lead_in(start).with_exact_roots() };
+    let mut states = merge_states(plan_direct(begin, to, limits, decel));
     states.push(MotionState::END);
     states
 }
@@ -23,7 +23,7 @@ pub(crate) fn move_direct(start: Point, to: f64, limits: &Limits, decel: f64) ->
 /// A jog to a velocity.
 pub(crate) fn jog_direct(start: Point, velocity: f64, limits: &Limits) -> Vec<MotionState> {
     let is_resting = start.v == 0.0 && start.a == 0.0;
-    let mut path = if is_resting { Path::exact(start) } else { lead(start).exactly() };
+    let mut path = if is_resting { Path::exact(start) } else { lead_in(start).with_exact_roots() };
     path.change(velocity, limits);
     let end = path.end;
     let mut states = path.states;
@@ -35,7 +35,7 @@ pub(crate) fn jog_direct(start: Point, velocity: f64, limits: &Limits) -> Vec<Mo
 }
 
 /// The fastest way from the end of a path to rest at `to`, with the resting tick after it.
-fn directly(begin: Path, to: f64, limits: &Limits, decel: f64) -> Vec<MotionState> {
+fn plan_direct(begin: Path, to: f64, limits: &Limits, decel: f64) -> Vec<MotionState> {
     let slowing = Limits { a: decel, ..*limits };
     let through = |speed: f64| {
         let mut path = begin.clone();
@@ -52,7 +52,7 @@ fn directly(begin: Path, to: f64, limits: &Limits, decel: f64) -> Vec<MotionStat
     let room = |speed: f64| sign * (to - reached(sign * speed));
     let full = room(limits.v);
     let (speed, cruise) =
-        if full >= 0.0 { (limits.v, full / limits.v) } else { (highest(limits.v, room), 0.0) };
+        if full >= 0.0 { (limits.v, full / limits.v) } else { (highest_speed(limits.v, room), 0.0) };
     let mut path = through(sign * speed);
     if cruise > 0.0 {
         path.append(cruise, 0.0);
@@ -63,7 +63,7 @@ fn directly(begin: Path, to: f64, limits: &Limits, decel: f64) -> Vec<MotionStat
 }
 
 /// The highest speed up to `limit` that leaves room.
-fn highest(limit: f64, room: impl Fn(f64) -> f64) -> f64 {
+fn highest_speed(limit: f64, room: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, limit);
     for _ in 0..HALVINGS {
         let middle = f64::midpoint(low, high);
@@ -77,7 +77,7 @@ fn highest(limit: f64, room: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// The states, with neighbours of the same jerk merged.
-fn joined(states: Vec<MotionState>) -> Vec<MotionState> {
+fn merge_states(states: Vec<MotionState>) -> Vec<MotionState> {
     let mut joined: Vec<MotionState> = Vec::with_capacity(states.len());
     for state in states {
         match joined.last_mut() {

@@ -95,11 +95,12 @@ pub(crate) fn check(
         let known = amplifier_off(tick, memory, axis);
         let known = known.or_else(|| scale(tick, memory, axis, &own));
         // An axis at the end of its travel cannot follow, which has already been reported.
-        if let Some(message) = known.or_else(|| cause(tick, memory, axis, &own)).filter(|_| !own.is_explained)
+        if let Some(message) =
+            known.or_else(|| following_error_cause(tick, memory, axis, &own)).filter(|_| !own.is_explained)
         {
             tick.remark_on_axis(memory, axis, message);
         }
-        tell(tick, &format!("Following Error Disabled Axis:{axis}"));
+        report_disabled(tick, &format!("Following Error Disabled Axis:{axis}"));
         switch_off(tick.servo, tick.machine, memory, axis);
         hold::abort_if_member(memory, axis);
     }
@@ -139,7 +140,12 @@ fn scale(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId, own: &AxisMemory) 
 }
 
 /// Returns the cause of an excessive following error, as far as the servo has seen it since the axis was enabled.
-fn cause(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId, own: &AxisMemory) -> Option<Message> {
+fn following_error_cause(
+    tick: &Tick<'_>,
+    memory: &GuestMemory,
+    axis: AxisId,
+    own: &AxisMemory,
+) -> Option<Message> {
     /// A part of the error that disables the axis.
     const SWINGS: f64 = 0.3;
     /// Changes that no motion needs.
@@ -174,7 +180,11 @@ fn cause(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId, own: &AxisMemory) 
     let swings = ahead > SWINGS * error.abs();
     if f64::from(velocity) * error > 0.0 && !swings {
         let is_at_limit = output.abs() >= most;
-        return Some(if is_at_limit { Message::OutputLimit { axis, most } } else { lags(memory, axis) });
+        return Some(if is_at_limit {
+            Message::OutputLimit { axis, most }
+        } else {
+            lag_message(memory, axis)
+        });
     }
     let cause = match memory.axis(axis, Chan::I) {
         0.0 => "the loop swings, so lower P or raise D",
@@ -183,12 +193,12 @@ fn cause(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId, own: &AxisMemory) 
     Some(Message::Overshoots { axis, cause })
 }
 
-fn lags(memory: &GuestMemory, axis: AxisId) -> Message {
+fn lag_message(memory: &GuestMemory, axis: AxisId) -> Message {
     Message::Lags { axis, most: f64::from_bits(memory.axis(axis, Chan::MAX_FOLLOWING_ERROR).to_bits()) }
 }
 
 /// Says that an axis was disabled, unless another message waits for the primary thread.
-fn tell(tick: &mut Tick<'_>, text: &str) {
+fn report_disabled(tick: &mut Tick<'_>, text: &str) {
     if !tick.servo.stop_request.is_asked() {
         tick.out.console.servo_message(text);
     }
@@ -285,7 +295,7 @@ fn check_switch(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, end
         }
         return tick.servo.stop_request.ask(format!("{} Limit Stop Axis:{axis}", end.name), StopReport::Stop);
     }
-    tell(tick, &format!("{} Limit Disabled Axis:{axis}", end.name));
+    report_disabled(tick, &format!("{} Limit Disabled Axis:{axis}", end.name));
     switch_off(tick.servo, tick.machine, memory, axis);
     hold::abort_if_member(memory, axis);
 }

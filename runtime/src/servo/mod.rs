@@ -57,7 +57,7 @@ use crate::servo::trajectory::TICKS_PER_SECOND;
 use crate::views::{AxisView, TypedAccess};
 use chips::stepgen::{StepLimit, generator_of};
 
-pub(crate) use output::{driven, four_phase, three_phase};
+pub(crate) use output::{four_phase, load_drive, three_phase};
 pub(crate) use state::{CallPlace, Servo, Tick};
 
 /// The number of step generators of a KStep, and the bit that enables its amplifiers.

@@ -39,8 +39,8 @@ pub(crate) fn drive(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId,
         store_pwm(memory, channel, pwm(channel, output as i32));
         let drive = match channel >= SNAP_AMP {
             true if is_faulted(tick, channel) => Drive::None,
-            true => Drive::Loop(command, AmplifierSignal::Current(limited(output, MAX_PWMC_VALUE))),
-            false => Drive::Loop(command, AmplifierSignal::Pwm(limited(output, MAX_PWM_VALUE))),
+            true => Drive::Loop(command, AmplifierSignal::Current(clamp_output(output, MAX_PWMC_VALUE))),
+            false => Drive::Loop(command, AmplifierSignal::Pwm(clamp_output(output, MAX_PWM_VALUE))),
         };
         tick.machine.loads[axis].drive = drive;
     } else {
@@ -56,7 +56,7 @@ fn drive_otherwise(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, 
     let channel = chan.get(Chan::OUTPUT_CHAN0);
     // Generators 8 to 15 of a Kogna have no pins here.
     if OutputMode::has_generator(mode) && !(has_more_generators && channel & 8 != 0) {
-        tick.io.stepgens.claim(axis, channel, &mut tick.io.pins, tick.now);
+        tick.io.stepgens.assign(axis, channel, &mut tick.io.pins, tick.now);
     } else {
         tick.io.stepgens.release(axis, &mut tick.io.pins, tick.now);
     }
@@ -96,7 +96,7 @@ fn stepped_to(chan: &AxisView<'_>) -> f64 {
 
 /// Returns the drive of an enabled axis whose outputs were computed elsewhere; `stepped` is the position of its step
 /// generator.
-pub(crate) fn driven(chan: &AxisView<'_>, stepped: f64) -> Drive {
+pub(crate) fn load_drive(chan: &AxisView<'_>, stepped: f64) -> Drive {
     let output = chan.get(Chan::OUTPUT);
     let command = super::command(chan);
     match OutputMode::new(chan.get(Chan::OUTPUT_MODE)) {
@@ -104,10 +104,10 @@ pub(crate) fn driven(chan: &AxisView<'_>, stepped: f64) -> Drive {
         Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir) => Drive::Steps(stepped),
         Some(OutputMode::Microstep | OutputMode::ClosedLoopMicrostep) => Drive::Steps(command),
         Some(OutputMode::DcServo) if chan.get(Chan::OUTPUT_CHAN0) >= SNAP_AMP => {
-            Drive::Loop(command, AmplifierSignal::Current(limited(output, MAX_PWMC_VALUE)))
+            Drive::Loop(command, AmplifierSignal::Current(clamp_output(output, MAX_PWMC_VALUE)))
         }
         Some(OutputMode::DcServo) => {
-            Drive::Loop(command, AmplifierSignal::Pwm(limited(output, MAX_PWM_VALUE)))
+            Drive::Loop(command, AmplifierSignal::Pwm(clamp_output(output, MAX_PWM_VALUE)))
         }
         Some(OutputMode::DacServo) => {
             Drive::Loop(command, AmplifierSignal::Dac(f64::from(analog(chan, output))))
@@ -126,7 +126,7 @@ fn is_faulted(tick: &mut Tick<'_>, channel: i32) -> bool {
 
 /// An output within ±`limit`.
 #[inline(always)]
-fn limited(output: f32, limit: i32) -> f64 {
+fn clamp_output(output: f32, limit: i32) -> f64 {
     let limit = f64::from(limit);
     f64::from(output).clamp(-limit, limit)
 }

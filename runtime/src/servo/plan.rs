@@ -145,7 +145,7 @@ fn input(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -> Input {
 
 /// The encoder read by an axis, if there is one at its input.
 pub(crate) fn encoder(memory: &mut GuestMemory, wiring: &Wiring, axis: AxisId) -> Option<Encoder> {
-    let turned_by = wiring.turns(memory, axis);
+    let turned_by = wiring.driving_axis(memory, axis);
     if turned_by.is_none() && !wiring.reads_hand(memory, axis) {
         return None;
     }

@@ -71,7 +71,7 @@ fn from_rest(distance: f64, limits: &Limits) -> i64 {
 
 /// Cycles of a move to `target` in motion.
 fn in_motion(start: Point, target: f64, limits: &Limits) -> i64 {
-    let profile::MovingStart { stop, sign, .. } = profile::weigh(start, target, limits);
+    let profile::MovingStart { stop, sign, .. } = profile::plan_moving_start(start, target, limits);
     let start = profile::after_lead(start);
     let changes = [(start, sign * limits.v), (Point { v: sign * limits.v, ..Point::rest(0.0) }, 0.0)];
     let long = changes.iter().filter(|(from, to)| is_in_three(*from, *to, limits)).count() as i64;

@@ -7,7 +7,7 @@
 
 use kmotiondef::limits::TIMEBASE;
 
-use crate::arithmetic::division::{divide, root};
+use crate::arithmetic::division::{divide, square_root};
 
 /// Seconds at constant velocity in front of a profile planned in motion: the board's planning time.
 pub(crate) const LEAD: f64 = 0.0018;
@@ -140,16 +140,16 @@ pub(super) struct Path {
 
 impl Path {
     fn from(start: Point) -> Self {
-        Self { states: Vec::new(), end: start, root }
+        Self { states: Vec::new(), end: start, root: square_root }
     }
 
     /// A path with square roots that are doubles.
     pub(super) fn exact(start: Point) -> Self {
-        Self::from(start).exactly()
+        Self::from(start).with_exact_roots()
     }
 
     /// Continues the path with square roots that are doubles.
-    pub(super) fn exactly(self) -> Self {
+    pub(super) fn with_exact_roots(self) -> Self {
         Self { root: libm::sqrt, ..self }
     }
 
@@ -281,7 +281,7 @@ impl Phases {
         // before the start, and its list jumps, as recorded. Backwards the coefficients have the opposite sign, so that
         // the other solution is the board's first choice, and its fallback is the correct one.
         let half = peak * ramp / 2.0;
-        let sum = root(half * half + peak * length);
+        let sum = square_root(half * half + peak * length);
         let constant = divide(sum - 3.0 * half, peak);
         let constant =
             if constant <= 0.0 && distance > 0.0 { -divide(sum + 3.0 * half, peak) } else { constant };
@@ -329,7 +329,7 @@ pub(crate) fn bare_move(from: f64, to: f64, ramps: [Ramp; 2], limits: &Limits) -
 /// A move planned while the axis moves: 20 ticks continue unchanged, then the target is approached at full speed, or
 /// the axis stops and starts again.
 pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<MotionState> {
-    let MovingStart { mut path, sign, remaining, stop } = weigh(start, to, limits);
+    let MovingStart { mut path, sign, remaining, stop } = plan_moving_start(start, to, limits);
     if stop.is_some() {
         path.move_from_rest(to, [Ramp::Smooth; 2], limits);
         path.states.push(MotionState::END);
@@ -355,8 +355,8 @@ pub(super) struct MovingStart {
 }
 
 /// Decides whether a move in motion continues or stops first.
-pub(super) fn weigh(start: Point, to: f64, limits: &Limits) -> MovingStart {
-    let path = lead(start);
+pub(super) fn plan_moving_start(start: Point, to: f64, limits: &Limits) -> MovingStart {
+    let path = lead_in(start);
     let mut stopped = path.clone();
     stopped.change(0.0, limits);
     let distance = to - path.end.x;
@@ -375,7 +375,7 @@ pub(super) fn weigh(start: Point, to: f64, limits: &Limits) -> MovingStart {
 
 /// The point from which a motion changes its speed after the planning time.
 pub(super) fn after_lead(start: Point) -> Point {
-    lead(start).end
+    lead_in(start).end
 }
 
 /// Returns whether a change of speed has a phase of constant acceleration.
@@ -387,7 +387,7 @@ pub(super) fn is_in_three(start: Point, velocity: f64, limits: &Limits) -> bool 
 
 /// A jog: 20 ticks unchanged, then the change to the new velocity, which lasts.
 pub(crate) fn jog(start: Point, velocity: f64, limits: &Limits) -> Vec<MotionState> {
-    let mut path = lead(start);
+    let mut path = lead_in(start);
     path.change(velocity, limits);
     path.states.push(if velocity == 0.0 {
         MotionState::off(FOREVER, path.end.x)
@@ -403,7 +403,7 @@ fn constant(point: &Point) -> MotionState {
 }
 
 /// The 20 ticks at constant velocity, during which the acceleration pauses.
-pub(super) fn lead(start: Point) -> Path {
+pub(super) fn lead_in(start: Point) -> Path {
     let mut path = Path::from(Point { a: 0.0, ..start });
     path.push(LEAD, 0.0);
     path.end.a = start.a;

@@ -15,7 +15,7 @@ pub(crate) fn is_recording(memory: &GuestMemory) -> bool {
 }
 
 /// Returns whether a recording also writes outside its buffer.
-fn injects(memory: &GuestMemory) -> bool {
+fn writes_outside_buffer(memory: &GuestMemory) -> bool {
     memory.get(GATHER.field(Gather::INJECT)) != 0
 }
 
@@ -32,7 +32,7 @@ pub(crate) fn sample(memory: &mut GuestMemory) -> bool {
     }
     let mut place = memory.get(GATHER.field(Gather::BUFPTR));
     let mut first = 0;
-    if injects(memory) {
+    if writes_outside_buffer(memory) {
         let target = memory.get(GATHER.field(Gather::LIST.element(0).field(GatherValueDef::ADDR)));
         let stimulus: f64 = memory.peek(place);
         memory.poke(target, stimulus);
@@ -49,7 +49,7 @@ pub(crate) fn sample(memory: &mut GuestMemory) -> bool {
         place = place.offset(8);
     }
     memory.untouched(|memory| memory.set(GATHER.field(Gather::BUFPTR), place));
-    if injects(memory) && !is_recording(memory) {
+    if writes_outside_buffer(memory) && !is_recording(memory) {
         let target = memory.get(GATHER.field(Gather::LIST.element(0).field(GatherValueDef::ADDR)));
         memory.poke(target, 0.0_f64);
     }

@@ -190,12 +190,12 @@ static TABLE: LazyLock<[Secant; LINES]> = LazyLock::new(|| {
     std::array::from_fn(|index| {
         let [begin, end] = [index, index + 1].map(|index| f32::from_bits(SINES[index]));
         let slope = (end - begin) * TURN as f32;
-        Secant { slope, origin: begin - slope * along(index) }
+        Secant { slope, origin: begin - slope * table_angle(index) }
     })
 });
 
 /// The angle of a number of table entries, in turns.
-fn along(lines: usize) -> f32 {
+fn table_angle(lines: usize) -> f32 {
     const LINE: f32 = 1.0 / TURN as f32;
     lines as f32 * LINE
 }
@@ -209,9 +209,10 @@ pub(crate) fn sine(cycles: f64, ahead: usize) -> f32 {
 /// The value a number of lines after an angle.
 fn value(angle: f32, ahead: usize) -> f32 {
     let index = (angle * TURN as f32) as i64 + ahead as i64;
-    let line = usize::try_from(index).map_or_else(|_| beyond(index), |index| TABLE.get(index).copied());
+    let line =
+        usize::try_from(index).map_or_else(|_| secant_below_zero(index), |index| TABLE.get(index).copied());
     let line = line.unwrap_or_default();
-    line.slope * (angle + along(ahead)) + line.origin
+    line.slope * (angle + table_angle(ahead)) + line.origin
 }
 
 /// Pointers in the list that precedes the table in memory, at the positions where lines have their slopes: those of the
@@ -223,7 +224,7 @@ const FIRST_POINTER: i64 = -27;
 
 /// The line that the board uses for an angle below 0: it reads before its table. The numbers between the pointers are
 /// too small for singles; the rest is 0.
-fn beyond(index: i64) -> Option<Secant> {
+fn secant_below_zero(index: i64) -> Option<Secant> {
     let pointer = usize::try_from(index - FIRST_POINTER).ok().and_then(|at| POINTERS.get(at))?;
     Some(Secant { slope: f32::from_bits(*pointer), origin: 0.0 })
 }

@@ -73,7 +73,7 @@ impl AxisMemory {
 
     /// Returns whether a position at the distance `rest` from its destination is approaching it, fast enough to cover
     /// that distance in a second.
-    pub(crate) fn settles(&self, rest: f64) -> bool {
+    pub(crate) fn is_settling(&self, rest: f64) -> bool {
         self.speed * TICKS_PER_SECOND > rest
     }
 }

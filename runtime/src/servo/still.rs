@@ -47,7 +47,7 @@ impl Default for Stillness {
 impl Stillness {
     /// Returns whether the last tick changed nothing and nothing has been written since. If `is_touched` is false, the
     /// axis structures, which are most of the data, have not been written to.
-    pub(super) fn lasts(&self, memory: &GuestMemory, is_touched: bool) -> bool {
+    pub(super) fn is_still(&self, memory: &GuestMemory, is_touched: bool) -> bool {
         debug_assert!(
             is_touched || !self.is_still || self.has_seen_axes(memory),
             "an axis has changed unnoticed"

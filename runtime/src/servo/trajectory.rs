@@ -6,7 +6,7 @@
 use kmotiondef::limits::TIMEBASE;
 
 use super::profile::{Mode, MotionState, Point};
-use crate::arithmetic::division::root;
+use crate::arithmetic::division::square_root;
 
 /// The position of a motion in its list.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,18 +107,18 @@ fn exponential(state: &MotionState, approach: &Approach) -> Step {
     } else {
         wanted
     };
-    reached = bounded(reached, v);
+    reached = clamp_velocity(reached, v);
     let (vc, xc, a) = (vc as f32, xc as f32, a as f32);
     if (reached as f32).abs() > vc {
         let rest = (dest as f32 - state.b as f32).abs();
         let square = (rest - xc) * (a + a) + vc * vc;
-        reached = bounded(reached, root(f64::from(square.abs())));
+        reached = clamp_velocity(reached, square_root(f64::from(square.abs())));
     }
     Step::Approaching(dest + reached * TIMEBASE, reached as f32)
 }
 
 /// A velocity within a limit of both directions.
-fn bounded(velocity: f64, limit: f64) -> f64 {
+fn clamp_velocity(velocity: f64, limit: f64) -> f64 {
     match velocity {
         velocity if velocity > limit => limit,
         velocity if velocity < -limit => -limit,

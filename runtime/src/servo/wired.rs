@@ -10,7 +10,7 @@ use kmotiondef::structs::Chan;
 use kmotiondef::variables::LAST_PWM;
 use vm::memory::GuestMemory;
 
-use super::output::driven;
+use super::output::load_drive;
 use crate::io::Io;
 use crate::io::bits::bit_state;
 use crate::machine::wiring::{channel_of, dac_value};
@@ -47,8 +47,8 @@ fn carried_to(io: &Io, memory: &mut GuestMemory, axis: AxisId, wired: Option<Cha
             Some(Drive::Open(AmplifierSignal::Dac(level(forward) - level(back))))
         }
         Channel::Pwm(pwm) => Some(match driver(memory, Channel::Pwm(pwm)) {
-            Some(axis) => driven(&AxisView::of(memory, axis), 0.0),
-            None => Drive::Open(decoded(memory.get(LAST_PWM.element(pwm)))),
+            Some(axis) => load_drive(&AxisView::of(memory, axis), 0.0),
+            None => Drive::Open(amplifier_signal(memory.get(LAST_PWM.element(pwm)))),
         }),
     }
 }
@@ -66,7 +66,7 @@ fn command(memory: &mut GuestMemory, axis: AxisId) -> f64 {
 }
 
 /// Returns the signal to a motor from a PWM channel's word. A vector turns nothing without an angle from an axis.
-fn decoded(word: i32) -> AmplifierSignal {
+fn amplifier_signal(word: i32) -> AmplifierSignal {
     let within = |value: i32, limit: i32| (-limit..=limit).contains(&value).then(|| f64::from(value));
     let current = within(word.wrapping_sub(41_984), MAX_PWMC_VALUE).map(AmplifierSignal::Current);
     let antiphase = within(word.wrapping_sub(1280), MAX_PWM_VALUE);
@@ -108,10 +108,10 @@ mod tests {
     fn words_of_every_kind_are_decoded() {
         for value in [-100, 0, 100] {
             let number = f64::from(value);
-            assert_eq!(decoded(antiphase(value)), AmplifierSignal::Pwm(number));
-            assert_eq!(decoded(recirculate(value)), AmplifierSignal::Pwm(number));
-            assert_eq!(decoded(current(value)), AmplifierSignal::Current(number));
+            assert_eq!(amplifier_signal(antiphase(value)), AmplifierSignal::Pwm(number));
+            assert_eq!(amplifier_signal(recirculate(value)), AmplifierSignal::Pwm(number));
+            assert_eq!(amplifier_signal(current(value)), AmplifierSignal::Current(number));
         }
-        assert_eq!(decoded(0x8000_0064_u32.cast_signed()), AmplifierSignal::Pwm(0.0));
+        assert_eq!(amplifier_signal(0x8000_0064_u32.cast_signed()), AmplifierSignal::Pwm(0.0));
     }
 }

@@ -51,7 +51,7 @@ pub(super) fn fixed(precision: Option<usize>, found: &Digits) -> u32 {
         (false, _) => (false, false),
     };
     let behind = if is_zero { decimals + 1 } else { (found.digits.len() as u32).saturating_sub(steps.whole) };
-    1845 + given(precision, [198, 33])
+    1845 + precision_cost(precision, [198, 33])
         + integer_part(steps, [336, 39, 391, 30])
         + 21 * steps.zeros
         + rounding(steps, [18, 8])
@@ -66,7 +66,7 @@ pub(super) fn fixed(precision: Option<usize>, found: &Digits) -> u32 {
 /// `%e`
 pub(super) fn scientific(precision: Option<usize>, found: &Digits) -> u32 {
     let (steps, decimals) = (&found.steps, precision.unwrap_or(6) as u32);
-    2700 + given(precision, [259, 75])
+    2700 + precision_cost(precision, [259, 75])
         + 30 * steps.zeros
         + rounding(steps, [36, 6])
         + 105 * steps.scaled
@@ -81,7 +81,7 @@ pub(super) fn general(precision: Option<usize>, found: &Digits) -> u32 {
     let is_zero = found.digits.is_empty();
     let stripped = if is_zero { count - 1 } else { found.zeros_at_end() };
     let [zero, exponent] = if found.is_scientific(count) { [32, 360] } else { [72, 0] };
-    1825 + given(precision, [235, 62])
+    1825 + precision_cost(precision, [235, 62])
         + integer_part(steps, [351, 43, 227, 32])
         + zero * steps.zeros
         + rounding(steps, [26, 9])
@@ -99,7 +99,7 @@ const fn if_so(reason: bool, cost: u32) -> u32 {
 }
 
 /// A precision that the format gives, and more if it has two digits.
-fn given(precision: Option<usize>, [cost, more]: [u32; 2]) -> u32 {
+fn precision_cost(precision: Option<usize>, [cost, more]: [u32; 2]) -> u32 {
     if_so(precision.is_some(), cost) + if_so(precision.is_some_and(|precision| precision >= 10), more)
 }
 

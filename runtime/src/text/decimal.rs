@@ -90,14 +90,14 @@ pub(crate) fn place_of_point(magnitude: f64) -> i32 {
 }
 
 /// The value after the first steps of scaling down, and the number of decimal places by which it was moved.
-fn finite(magnitude: f64) -> (f64, i32) {
+fn scale_down(magnitude: f64) -> (f64, i32) {
     // 2^1024 is not a double, but a tenth of it is: 2^1023 times twice 0.1.
     if magnitude.is_finite() { (magnitude, 0) } else { (HALF_OF_INFINITE * 0.2, 1) }
 }
 
 /// Splits off the digits of the integer part, if it is not 0.
 fn split(magnitude: f64) -> LeadingDigits {
-    let (mut value, mut point) = finite(magnitude);
+    let (mut value, mut point) = scale_down(magnitude);
     while value > WHOLE_MAX {
         value *= 0.1;
         point += 1;
@@ -129,7 +129,7 @@ fn divided_bits(number: u32) -> u32 {
 
 /// With the first digit.
 fn split_scientific(magnitude: f64) -> LeadingDigits {
-    let (mut value, mut exponent) = finite(magnitude);
+    let (mut value, mut exponent) = scale_down(magnitude);
     while value >= 10.0 {
         value *= 0.1;
         exponent += 1;

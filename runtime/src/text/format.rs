@@ -179,28 +179,28 @@ fn convert<A: Arguments>(
     match letter {
         b'd' | b'i' if spec.long_long => signed(spec, arguments.long_long()?.cast_signed(), out),
         b'u' | b'x' | b'X' | b'o' if spec.long_long => unsigned(spec, arguments.long_long()?, letter, out),
-        b'd' | b'i' if spec.long => signed(spec, long(arguments)?, out),
+        b'd' | b'i' if spec.long => signed(spec, read_long(arguments)?, out),
         b'u' | b'x' | b'X' | b'o' if spec.long => {
-            unsigned(spec, long(arguments)?.cast_unsigned() & LONG_MASK, letter, out);
+            unsigned(spec, read_long(arguments)?.cast_unsigned() & LONG_MASK, letter, out);
         }
         b'd' | b'i' => signed(spec, (arguments.word()? as i32).into(), out),
         b'u' | b'x' | b'X' | b'o' => unsigned(spec, arguments.word()?.into(), letter, out),
         b'p' => {
-            let digits = precise(spec, &format!("{:x}", arguments.word()?));
+            let digits = with_precision(spec, &format!("{:x}", arguments.word()?));
             let prefix = if spec.alternate && spec.is_nearer_to_c() { "0x" } else { "" };
             let head = if spec.is_nearer_to_c() { b"" } else { sign(spec, false) };
-            pad(&filled(spec), head, format!("{prefix}{digits}").as_bytes(), out);
+            pad(&with_blank_fill(spec), head, format!("{prefix}{digits}").as_bytes(), out);
         }
         b'c' => {
             out.spend(cost::CHARACTER);
-            pad(spec, blank(spec), &[arguments.word()? as u8], out);
+            pad(spec, blank_prefix(spec), &[arguments.word()? as u8], out);
         }
         b's' => {
             let limit = spec.precision.unwrap_or(usize::MAX);
             let text = arguments.text(limit)?.unwrap_or_else(|| b"(null)".to_vec());
             let shown = text.len().min(limit);
             out.spend(cost::text(shown as u32));
-            pad(&unzeroed(spec), b"", &text[..shown], out);
+            pad(&without_zero_fill(spec), b"", &text[..shown], out);
         }
         b'F' if spec.is_nearer_to_c() => float(spec, arguments.double()?, b'f', out),
         b'f' | b'e' | b'E' | b'g' | b'G' => float(spec, arguments.double()?, letter, out),
@@ -209,8 +209,8 @@ fn convert<A: Arguments>(
             out.text.push(b'%');
         }
         // The end of the format.
-        0 => pad(&unzeroed(spec), sign(spec, false), b"", out),
-        _ => pad(&unzeroed(spec), b"", b"", out),
+        0 => pad(&without_zero_fill(spec), sign(spec, false), b"", out),
+        _ => pad(&without_zero_fill(spec), b"", b"", out),
     }
     Ok(())
 }
@@ -219,13 +219,13 @@ fn convert<A: Arguments>(
 const LONG_MASK: u64 = (1 << 40) - 1;
 
 /// The board's `long`: 40 bits of two words. The words after the last argument are whatever the caller has there.
-fn long<A: Arguments>(arguments: &mut A) -> Result<i64, A::Error> {
+fn read_long<A: Arguments>(arguments: &mut A) -> Result<i64, A::Error> {
     const UNUSED: u32 = u64::BITS - LONG_MASK.count_ones();
     Ok((arguments.long_long()? << UNUSED).cast_signed() >> UNUSED)
 }
 
 /// Returns the conversion without zero filling.
-fn unzeroed(spec: &Spec) -> Spec {
+fn without_zero_fill(spec: &Spec) -> Spec {
     Spec { zero: false, ..*spec }
 }
 
@@ -245,7 +245,7 @@ fn signed(spec: &Spec, value: i64, out: &mut FormattedText) {
 }
 
 /// Returns the prefix of an unsigned number or a character: a blank if that flag is given, whatever the other flags.
-fn blank(spec: &Spec) -> &'static [u8] {
+fn blank_prefix(spec: &Spec) -> &'static [u8] {
     if spec.space { b" " } else { b"" }
 }
 
@@ -260,26 +260,26 @@ fn unsigned(spec: &Spec, value: u64, letter: u8, out: &mut FormattedText) {
         b'o' => ("0", format!("{value:o}")),
         _ => ("", value.to_string()),
     };
-    let digits = precise(spec, &text);
+    let digits = with_precision(spec, &text);
     let count = digits.len() as u32;
     out.spend(if letter == b'u' { cost::decimal(count, false) } else { cost::hexadecimal(count) });
     let prefix = if spec.alternate && !digits.is_empty() { prefix } else { "" };
     if !spec.is_nearer_to_c() {
-        return pad(&filled(spec), blank(spec), format!("{prefix}{digits}").as_bytes(), out);
+        return pad(&with_blank_fill(spec), blank_prefix(spec), format!("{prefix}{digits}").as_bytes(), out);
     }
     let is_needless = letter == b'o' && digits.starts_with('0');
-    pad(&filled(spec), if is_needless { b"" } else { prefix.as_bytes() }, digits.as_bytes(), out);
+    pad(&with_blank_fill(spec), if is_needless { b"" } else { prefix.as_bytes() }, digits.as_bytes(), out);
 }
 
 /// Digits of a signed integer after their sign.
 fn integer(spec: &Spec, head: &[u8], text: &str, out: &mut FormattedText) {
-    let digits = precise(spec, text);
+    let digits = with_precision(spec, text);
     out.spend(cost::decimal(digits.len() as u32, head == b"-"));
-    pad(&filled(spec), head, digits.as_bytes(), out);
+    pad(&with_blank_fill(spec), head, digits.as_bytes(), out);
 }
 
 /// Digits, with leading zeros up to the precision; 0 has none if the precision is 0.
-fn precise(spec: &Spec, text: &str) -> String {
+fn with_precision(spec: &Spec, text: &str) -> String {
     let precision = spec.precision.unwrap_or(1);
     // Board quirk: in firmware 5 it has one with the flag `#`.
     let is_shown = spec.is_nearer_to_c() && spec.alternate;
@@ -287,8 +287,8 @@ fn precise(spec: &Spec, text: &str) -> String {
 }
 
 /// An integer with a precision is filled with blanks.
-fn filled(spec: &Spec) -> Spec {
-    if spec.precision.is_some() { unzeroed(spec) } else { *spec }
+fn with_blank_fill(spec: &Spec) -> Spec {
+    if spec.precision.is_some() { without_zero_fill(spec) } else { *spec }
 }
 
 /// `%f`, `%e` and `%g`. Values that are not finite print like 2 to the power of 1024; these and zeros have no sign.

@@ -107,7 +107,7 @@ fn obey<S: Sink>(scanner: &mut Scanner<'_>, format: &[u8], sink: &mut S) -> Resu
             scanner.behind_character = false;
             let (spec, tail) = parse(rest, Dialect::Firmware4);
             let Some((&letter, tail)) = tail.split_first() else { break };
-            let (set, tail) = if letter == b'[' { bracketed(tail) } else { (&[][..], tail) };
+            let (set, tail) = if letter == b'[' { split_scan_set(tail) } else { (&[][..], tail) };
             rest = tail;
             scanner.convert(&spec, letter, set, sink)?
         } else {
@@ -146,7 +146,7 @@ pub(super) fn parse(format: &[u8], dialect: Dialect) -> (Spec, &[u8]) {
 }
 
 /// The characters up to `]`, including a leading `]` or `^]`, and the rest of the format.
-pub(super) fn bracketed(format: &[u8]) -> (&[u8], &[u8]) {
+pub(super) fn split_scan_set(format: &[u8]) -> (&[u8], &[u8]) {
     let first = usize::from(format.first() == Some(&b'^')) + 1;
     let end = format.iter().skip(first).position(|&byte| byte == b']').map(|index| index + first);
     let end = end.unwrap_or(format.len());
@@ -270,11 +270,11 @@ fn integer<'t>(spec: &Spec, letter: u8, window: &'t [u8]) -> (ScannedValue<'t>, 
         _ => Base::Hexadecimal,
     };
     let (value, used) = integer_value(window, base);
-    (converted(spec, value), used)
+    (stored_integer(spec, value), used)
 }
 
 /// An integer as a conversion stores it.
-pub(super) fn converted(spec: &Spec, value: u64) -> ScannedValue<'static> {
+pub(super) fn stored_integer(spec: &Spec, value: u64) -> ScannedValue<'static> {
     match spec.length {
         Length::Byte => ScannedValue::Byte(value as i8),
         Length::Short => ScannedValue::Short(value as i16),

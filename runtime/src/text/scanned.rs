@@ -44,7 +44,7 @@ pub(super) fn integer_value(text: &[u8], base: Base) -> (u64, usize) {
         (Base::Any, _) => (10, digits),
     };
     let is_signed = matches!(base, Base::Decimal | Base::Any);
-    (limited(magnitude(digits, radix), negative, is_signed), reader.at)
+    (saturate_long(magnitude(digits, radix), negative, is_signed), reader.at)
 }
 
 /// The value of the digits up to the first that is none in this base.
@@ -56,7 +56,7 @@ pub(super) fn magnitude(digits: &[u8], radix: u32) -> u64 {
 }
 
 /// The 40 bits of a value that stops at the limits of its type.
-pub(super) fn limited(magnitude: u64, negative: bool, is_signed: bool) -> u64 {
+pub(super) fn saturate_long(magnitude: u64, negative: bool, is_signed: bool) -> u64 {
     let limit = 1_u64 << if is_signed { LONG_BITS - 1 } else { LONG_BITS };
     let magnitude = if is_signed && negative { magnitude.min(limit) } else { magnitude.min(limit - 1) };
     let value = if negative { magnitude.wrapping_neg() } else { magnitude };
@@ -91,14 +91,14 @@ pub(crate) fn float_value(text: &[u8]) -> (f64, usize) {
     let digits = whole.iter().chain(decimals);
     let mantissa = digits.fold(0.0, |value: f64, digit| value * 10.0 + f64::from(digit - b'0'));
     let value =
-        if is_number { scaled(mantissa, exponent.saturating_sub(decimals.len() as i64)) } else { 0.0 };
+        if is_number { scale_decimal(mantissa, exponent.saturating_sub(decimals.len() as i64)) } else { 0.0 };
     // Board quirk: a value that is too small is 0 without a sign.
     let negative = negative && exponent >= -EXPONENT_MAX;
     (if negative { -value } else { value }, reader.at)
 }
 
 /// A mantissa times ten to the power of `exponent`.
-fn scaled(mantissa: f64, exponent: i64) -> f64 {
+fn scale_decimal(mantissa: f64, exponent: i64) -> f64 {
     let is_small = exponent < 0;
     let exponent = exponent.unsigned_abs();
     if mantissa == 0.0 || exponent > EXPONENT_MAX.unsigned_abs() {

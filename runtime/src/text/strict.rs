@@ -4,9 +4,10 @@
 //! Recorded in `fw5-text.jsonl`, which the test below replays. Numbers have the same values as in firmware 4.34.
 
 use super::scan::{
-    Conversions, ScannedValue, Sink, Spec, bracketed, converted, float, has_nothing_for, parse, span,
+    Conversions, ScannedValue, Sink, Spec, float, has_nothing_for, parse, span, split_scan_set,
+    stored_integer,
 };
-use super::scanned::{Base, limited, magnitude};
+use super::scanned::{Base, magnitude, saturate_long};
 use super::{Dialect, cost};
 
 /// The reason why a call ends before its format does.
@@ -33,7 +34,7 @@ pub(super) fn scan<S: Sink>(text: &[u8], format: &[u8], sink: &mut S) -> Result<
             is_behind_character = false;
             let (spec, tail) = parse(rest, Dialect::Firmware5);
             let Some((&letter, tail)) = tail.split_first() else { break };
-            let (set, tail) = if letter == b'[' { bracketed(tail) } else { (&[][..], tail) };
+            let (set, tail) = if letter == b'[' { split_scan_set(tail) } else { (&[][..], tail) };
             rest = tail;
             scanner.convert(&spec, letter, set, sink)?
         } else if byte.is_ascii_whitespace() && !is_behind_character {
@@ -108,7 +109,7 @@ impl<'t> Scanner<'t> {
         let (value, used) = match letter {
             b'd' | b'u' | b'o' | b'i' | b'x' | b'X' | b'p' => {
                 let (value, used) = integer(window, letter);
-                (converted(spec, value), used)
+                (stored_integer(spec, value), used)
             }
             b'f' | b'e' | b'E' | b'g' | b'G' => {
                 // An exponent letter without digits is consumed and ignored.
@@ -167,6 +168,6 @@ fn integer(text: &[u8], letter: u8) -> (u64, usize) {
         return (0, 0);
     }
     let is_signed = matches!(letter, b'd' | b'i');
-    let value = limited(magnitude(&digits[..count], radix), text.first() == Some(&b'-'), is_signed);
+    let value = saturate_long(magnitude(&digits[..count], radix), text.first() == Some(&b'-'), is_signed);
     (value, signed + prefix + count)
 }

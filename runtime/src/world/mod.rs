@@ -68,7 +68,7 @@ impl World {
         if !access.io.pins.changes.is_on() && !hears_now {
             return false;
         }
-        changes::sweep(&mut access.io.pins.changes, context.memory, access.now);
+        changes::scan_virtual_bits(&mut access.io.pins.changes, context.memory, access.now);
         access.io.fpga.tell_pwm(&mut access.io.pins, access.now);
         access.lines().settle();
         let sent = access.machine.run_devices(access.io, access.out, self.hears_uart, access.now);
@@ -80,7 +80,7 @@ impl World {
     }
 
     /// Plays an operator from now on.
-    pub(crate) fn assist(&mut self, now: Cycles) {
+    pub(crate) fn play_operator(&mut self, now: Cycles) {
         self.assist = Some(Assist::new(now));
     }
 
@@ -122,7 +122,7 @@ impl World {
             && let Some(record) = recorder.sample(view)
         {
             let back = (context.tick.get() - tick.get()) as i64 * Cycles::PER_TICK.get();
-            out.tell(context.now - Cycles::new(back), EventKind::Trace(record));
+            out.emit(context.now - Cycles::new(back), EventKind::Trace(record));
         }
     }
 
@@ -193,5 +193,5 @@ fn tell_change(access: &mut WorldAccess<'_>, moment: Moment, BitChange { at, bit
         }
         _ => None,
     };
-    access.out.tell(at, EventKind::Trace(Record::Bit { bit, level, thread }));
+    access.out.emit(at, EventKind::Trace(Record::Bit { bit, level, thread }));
 }

@@ -133,7 +133,7 @@ impl Core {
     /// Executes packets until no cycles are left and an interrupt is possible.
     pub fn run<M: Memory>(&mut self, memory: &mut M) -> Halt {
         self.border = StopPoints::Slice;
-        self.idle.forget();
+        self.idle.clear();
         self.run_to_border(memory)
     }
 
@@ -177,7 +177,7 @@ impl Core {
         memory: &mut M,
         count: &mut dyn FnMut(&M, u32, i64, &State),
     ) -> Halt {
-        self.idle.forget();
+        self.idle.clear();
         loop {
             if self.state.clock.is_over()
                 && let Some(halt) = self.border.halt(&self.state)
@@ -235,7 +235,7 @@ impl Core {
     /// Executes packets up to the first that begins in cycle `until` or later.
     pub fn run_until<M: Memory>(&mut self, memory: &mut M, until: u64) -> Halt {
         self.border = StopPoints::Next;
-        self.idle.forget();
+        self.idle.clear();
         self.state.clock.set_end(until);
         self.run_to_border(memory)
     }
@@ -243,7 +243,7 @@ impl Core {
     /// Acts as [`run_until`](Self::run_until), but stops at the first point at which an interrupt is possible.
     pub fn run_to_interrupt<M: Memory>(&mut self, memory: &mut M, until: u64) -> Halt {
         self.border = StopPoints::Interrupt(until);
-        self.idle.forget();
+        self.idle.clear();
         self.state.clock.deadline = self.state.clock.cycle;
         self.run_to_border(memory)
     }
@@ -343,9 +343,11 @@ impl Core {
 
     /// Called after a backward branch: skips a loop that changes nothing, up to the next border.
     fn went_back<M: Memory>(&mut self, memory: &M) {
-        match self.idle.arrive(self.state.pc, self.state.cycle()) {
+        match self.idle.record_branch(self.state.pc, self.state.cycle()) {
             BranchAction::Pass => {}
-            BranchAction::TakePicture => self.idle.look(self.state.picture(), self.packets, memory.touches()),
+            BranchAction::TakePicture => {
+                self.idle.start_iteration(self.state.picture(), self.packets, memory.touches());
+            }
             BranchAction::PictureReached => self.skip_iterations(memory),
         }
     }
@@ -447,14 +449,14 @@ impl Core {
 
     /// The number of packets executed as part of loops.
     #[cfg(test)]
-    pub(super) fn looped(&self) -> u64 {
+    pub(super) fn packets_in_loops(&self) -> u64 {
         self.loops.packets()
     }
 
     /// Waits for the interrupt.
     fn wait(&mut self) {
         self.state.is_idle = false;
-        self.state.settle();
+        self.state.land_all();
         let left = self.state.clock.left();
         self.state.clock.cycle += left.max(0).cast_unsigned();
     }

@@ -20,52 +20,52 @@ impl State {
         let s1 = self.regs[usize::from(m.a)].wrapping_add(m.imm);
         let s2 = self.regs[usize::from(m.b)];
         match m.work {
-            Work::Add => self.give::<RENAMED>(m, s1.wrapping_add(s2)),
-            Work::Sub => self.give::<RENAMED>(m, s1.wrapping_sub(s2)),
-            Work::AddScaled => self.give::<RENAMED>(m, s2.wrapping_add(s1 << m.extra)),
-            Work::SubScaled => self.give::<RENAMED>(m, s2.wrapping_sub(s1 << m.extra)),
-            Work::And => self.give::<RENAMED>(m, s1 & s2),
-            Work::Or => self.give::<RENAMED>(m, s1 | s2),
-            Work::Xor => self.give::<RENAMED>(m, s1 ^ s2),
-            Work::Cmpeq => self.give::<RENAMED>(m, u32::from(s1 == s2)),
-            Work::Cmpgt => self.give::<RENAMED>(m, u32::from(s1.cast_signed() > s2.cast_signed())),
-            Work::Cmplt => self.give::<RENAMED>(m, u32::from(s1.cast_signed() < s2.cast_signed())),
-            Work::Cmpgtu => self.give::<RENAMED>(m, u32::from(s1 > s2)),
-            Work::Cmpltu => self.give::<RENAMED>(m, u32::from(s1 < s2)),
-            Work::Abs => self.give::<RENAMED>(m, alu::abs(s2)),
-            Work::Lmbd => self.give::<RENAMED>(m, alu::lmbd(s1, s2)),
-            Work::Norm => self.give::<RENAMED>(m, alu::norm(s2)),
-            Work::Sadd => self.give::<RENAMED>(m, alu::saturate(signed(s1) + signed(s2))),
-            Work::Ssub => self.give::<RENAMED>(m, alu::saturate(signed(s1) - signed(s2))),
-            Work::Subc => self.give::<RENAMED>(m, alu::subc(s1, s2)),
-            Work::Add2 => self.give::<RENAMED>(m, alu::add2(s1, s2)),
-            Work::Sub2 => self.give::<RENAMED>(m, alu::sub2(s1, s2)),
-            Work::Clr => self.give::<RENAMED>(m, alu::clr(s1, s2)),
-            Work::Set => self.give::<RENAMED>(m, alu::set(s1, s2)),
-            Work::Ext => self.give::<RENAMED>(m, alu::ext(s1, s2)),
-            Work::Extu => self.give::<RENAMED>(m, alu::extu(s1, s2)),
-            Work::Shl => self.give::<RENAMED>(m, alu::shl(s1, s2)),
-            Work::Shr => self.give::<RENAMED>(m, alu::shr(s1, s2)),
-            Work::Shru => self.give::<RENAMED>(m, alu::shru(s1, s2)),
-            Work::Sshl => self.give::<RENAMED>(m, alu::sshl(s1, s2)),
-            Work::Mvk => self.give::<RENAMED>(m, m.imm),
-            Work::Mvkh => self.give::<RENAMED>(m, m.imm | self.regs[usize::from(m.dst)] & 0xFFFF),
+            Work::Add => self.write_result::<RENAMED>(m, s1.wrapping_add(s2)),
+            Work::Sub => self.write_result::<RENAMED>(m, s1.wrapping_sub(s2)),
+            Work::AddScaled => self.write_result::<RENAMED>(m, s2.wrapping_add(s1 << m.extra)),
+            Work::SubScaled => self.write_result::<RENAMED>(m, s2.wrapping_sub(s1 << m.extra)),
+            Work::And => self.write_result::<RENAMED>(m, s1 & s2),
+            Work::Or => self.write_result::<RENAMED>(m, s1 | s2),
+            Work::Xor => self.write_result::<RENAMED>(m, s1 ^ s2),
+            Work::Cmpeq => self.write_result::<RENAMED>(m, u32::from(s1 == s2)),
+            Work::Cmpgt => self.write_result::<RENAMED>(m, u32::from(s1.cast_signed() > s2.cast_signed())),
+            Work::Cmplt => self.write_result::<RENAMED>(m, u32::from(s1.cast_signed() < s2.cast_signed())),
+            Work::Cmpgtu => self.write_result::<RENAMED>(m, u32::from(s1 > s2)),
+            Work::Cmpltu => self.write_result::<RENAMED>(m, u32::from(s1 < s2)),
+            Work::Abs => self.write_result::<RENAMED>(m, alu::abs(s2)),
+            Work::Lmbd => self.write_result::<RENAMED>(m, alu::lmbd(s1, s2)),
+            Work::Norm => self.write_result::<RENAMED>(m, alu::norm(s2)),
+            Work::Sadd => self.write_result::<RENAMED>(m, alu::saturate(signed(s1) + signed(s2))),
+            Work::Ssub => self.write_result::<RENAMED>(m, alu::saturate(signed(s1) - signed(s2))),
+            Work::Subc => self.write_result::<RENAMED>(m, alu::subc(s1, s2)),
+            Work::Add2 => self.write_result::<RENAMED>(m, alu::add2(s1, s2)),
+            Work::Sub2 => self.write_result::<RENAMED>(m, alu::sub2(s1, s2)),
+            Work::Clr => self.write_result::<RENAMED>(m, alu::clr(s1, s2)),
+            Work::Set => self.write_result::<RENAMED>(m, alu::set(s1, s2)),
+            Work::Ext => self.write_result::<RENAMED>(m, alu::ext(s1, s2)),
+            Work::Extu => self.write_result::<RENAMED>(m, alu::extu(s1, s2)),
+            Work::Shl => self.write_result::<RENAMED>(m, alu::shl(s1, s2)),
+            Work::Shr => self.write_result::<RENAMED>(m, alu::shr(s1, s2)),
+            Work::Shru => self.write_result::<RENAMED>(m, alu::shru(s1, s2)),
+            Work::Sshl => self.write_result::<RENAMED>(m, alu::sshl(s1, s2)),
+            Work::Mvk => self.write_result::<RENAMED>(m, m.imm),
+            Work::Mvkh => self.write_result::<RENAMED>(m, m.imm | self.regs[usize::from(m.dst)] & 0xFFFF),
             Work::AddLong => self.give_long::<RENAMED>(m, self.long1(m) + self.long2(m)),
             Work::SubLong => self.give_long::<RENAMED>(m, self.long1(m) - self.long2(m)),
             Work::SaddLong => self.give_long::<RENAMED>(m, alu::saturate_long(self.long1(m) + self.long2(m))),
             Work::SsubLong => self.give_long::<RENAMED>(m, alu::saturate_long(self.long1(m) - self.long2(m))),
             Work::AbsLong => self.give_long::<RENAMED>(m, self.long2(m).abs()),
-            Work::CmpeqLong => self.give::<RENAMED>(m, u32::from(self.long1(m) == self.long2(m))),
-            Work::CmpgtLong => self.give::<RENAMED>(m, u32::from(self.long1(m) > self.long2(m))),
-            Work::CmpltLong => self.give::<RENAMED>(m, u32::from(self.long1(m) < self.long2(m))),
+            Work::CmpeqLong => self.write_result::<RENAMED>(m, u32::from(self.long1(m) == self.long2(m))),
+            Work::CmpgtLong => self.write_result::<RENAMED>(m, u32::from(self.long1(m) > self.long2(m))),
+            Work::CmpltLong => self.write_result::<RENAMED>(m, u32::from(self.long1(m) < self.long2(m))),
             Work::CmpgtuLong => {
-                self.give::<RENAMED>(m, u32::from(unsigned(self.long1(m)) > unsigned(self.long2(m))));
+                self.write_result::<RENAMED>(m, u32::from(unsigned(self.long1(m)) > unsigned(self.long2(m))));
             }
             Work::CmpltuLong => {
-                self.give::<RENAMED>(m, u32::from(unsigned(self.long1(m)) < unsigned(self.long2(m))));
+                self.write_result::<RENAMED>(m, u32::from(unsigned(self.long1(m)) < unsigned(self.long2(m))));
             }
-            Work::NormLong => self.give::<RENAMED>(m, alu::norm_long(self.long2(m))),
-            Work::SatLong => self.give::<RENAMED>(m, alu::saturate(self.long2(m))),
+            Work::NormLong => self.write_result::<RENAMED>(m, alu::norm_long(self.long2(m))),
+            Work::SatLong => self.write_result::<RENAMED>(m, alu::saturate(self.long2(m))),
             Work::ShlLong => self.give_long::<RENAMED>(m, alu::shl_long(i64::from(s1), self.long2(m))),
             Work::ShrLong => self.give_long::<RENAMED>(m, alu::shr_long(i64::from(s1), self.long2(m))),
             Work::ShruLong => self.give_long::<RENAMED>(m, alu::shru_long(i64::from(s1), self.long2(m))),
@@ -85,13 +85,19 @@ impl State {
             Work::Intdp => self.land_pair::<RENAMED>(4, 5, m.dst, float::intdp(s2)),
             Work::Intdpu => self.land_pair::<RENAMED>(4, 5, m.dst, float::intdpu(s2)),
             Work::Spdp => self.give_double::<RENAMED>(m, float::spdp(s2)),
-            Work::Abssp => self.give::<RENAMED>(m, s2 & 0x7FFF_FFFF),
+            Work::Abssp => self.write_result::<RENAMED>(m, s2 & 0x7FFF_FFFF),
             Work::Absdp => self.give_double::<RENAMED>(m, self.double2(m) & !(1 << 63)),
-            Work::Cmpeqsp => self.give::<RENAMED>(m, u32::from(float::single(s1) == float::single(s2))),
-            Work::Cmpgtsp => self.give::<RENAMED>(m, u32::from(float::single(s1) > float::single(s2))),
-            Work::Cmpltsp => self.give::<RENAMED>(m, u32::from(float::single(s1) < float::single(s2))),
-            Work::Rcpsp => self.give::<RENAMED>(m, float::rcpsp(s2)),
-            Work::Rsqrsp => self.give::<RENAMED>(m, float::rsqrsp(s2)),
+            Work::Cmpeqsp => {
+                self.write_result::<RENAMED>(m, u32::from(float::single(s1) == float::single(s2)));
+            }
+            Work::Cmpgtsp => {
+                self.write_result::<RENAMED>(m, u32::from(float::single(s1) > float::single(s2)));
+            }
+            Work::Cmpltsp => {
+                self.write_result::<RENAMED>(m, u32::from(float::single(s1) < float::single(s2)));
+            }
+            Work::Rcpsp => self.write_result::<RENAMED>(m, float::rcpsp(s2)),
+            Work::Rsqrsp => self.write_result::<RENAMED>(m, float::rsqrsp(s2)),
             Work::Rcpdp => self.give_double::<RENAMED>(m, float::rcpdp(self.double2(m))),
             Work::Rsqrdp => self.give_double::<RENAMED>(m, float::rsqrdp(self.double2(m))),
             Work::Adddp => match self.words::<RENAMED>(m, 1, s1, s2) {
@@ -160,7 +166,7 @@ impl State {
             }
             Work::ReadControl => {
                 let value = self.read_control(m.extra);
-                self.give::<RENAMED>(m, value);
+                self.write_result::<RENAMED>(m, value);
             }
             Work::WriteControl => self.write_control(m.extra, s2),
             Work::Idle => self.is_idle = true,
@@ -199,7 +205,7 @@ impl State {
 
     /// A result of E1.
     #[inline(always)]
-    fn give<const RENAMED: bool>(&mut self, m: &MicroOp, value: u32) {
+    fn write_result<const RENAMED: bool>(&mut self, m: &MicroOp, value: u32) {
         self.write_or_defer::<RENAMED>(m, m.dst, value);
     }
 
@@ -221,7 +227,7 @@ impl State {
 
     /// Schedules a double whose low word is available in E1 and its high word in E2.
     fn give_double<const RENAMED: bool>(&mut self, m: &MicroOp, value: u64) {
-        self.give::<RENAMED>(m, value as u32);
+        self.write_result::<RENAMED>(m, value as u32);
         self.land::<RENAMED>(2, m.dst | 1, (value >> 32) as u32);
     }
 

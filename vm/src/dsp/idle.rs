@@ -76,7 +76,7 @@ pub(super) enum BranchAction {
 
 impl IdleDetector {
     /// Drops all observations, because of an event.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.happened = self.happened.wrapping_add(1);
         if self.happened == 0 {
             self.visits = [Visits::default(); PLACES];
@@ -87,7 +87,7 @@ impl IdleDetector {
 
     /// Called when a branch has gone back to `pc` in this cycle.
     #[inline(always)]
-    pub(super) fn arrive(&mut self, pc: u32, cycle: u64) -> BranchAction {
+    pub(super) fn record_branch(&mut self, pc: u32, cycle: u64) -> BranchAction {
         if let Some(iteration) = &self.iteration {
             if iteration.picture.pc == pc {
                 return BranchAction::PictureReached;
@@ -107,7 +107,7 @@ impl IdleDetector {
     }
 
     /// Starts to observe the iteration that begins here.
-    pub(super) fn look(&mut self, picture: Picture, packets: u64, touches: u64) {
+    pub(super) fn start_iteration(&mut self, picture: Picture, packets: u64, touches: u64) {
         self.iteration = Some(Box::new(Iteration { picture, packets, touches, stores: Vec::new() }));
         self.is_watching = true;
     }

@@ -107,7 +107,7 @@ impl Loops {
             return None;
         }
         if self.generation != cache.generation() {
-            self.forget(cache.generation());
+            self.clear(cache.generation());
         }
         let pc = state.pc();
         let place = &mut self.places[pc as usize / 4 % PLACES];
@@ -146,7 +146,7 @@ impl Loops {
 
     /// The code has changed.
     #[cold]
-    fn forget(&mut self, generation: u64) {
+    fn clear(&mut self, generation: u64) {
         self.generation = generation;
         self.known.clear();
         self.count = 0;
@@ -193,7 +193,7 @@ impl RenamedLoop {
         packets: &mut u64,
     ) -> Result<(), (TrapKind, Option<usize>)> {
         let LoopPlan { packets: planned, borders } = &self.planned;
-        borders[0].before.enter(state);
+        borders[0].before.load_state(state);
         let began = *packets;
         let mut at = 0;
         while !state.clock.is_over() {
@@ -227,7 +227,7 @@ impl RenamedLoop {
                 break;
             }
         }
-        borders[at as usize].before.leave(state);
+        borders[at as usize].before.store_state(state);
         state.pc = planned[at as usize].pc;
         self.packets += *packets - began;
         Ok(())
@@ -236,7 +236,7 @@ impl RenamedLoop {
     /// Leaves the loop within a packet, before the instruction with this number.
     #[cold]
     fn leave_within(&self, at: u32, number: usize, state: &mut State) {
-        self.planned.borders[at as usize].before_instruction(number).leave(state);
+        self.planned.borders[at as usize].before_instruction(number).store_state(state);
         state.pc = self.planned.packets[at as usize].pc;
     }
 }

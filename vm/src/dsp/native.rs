@@ -105,7 +105,7 @@ impl Native {
     ) {
         while state.clock.left() >= i64::from(LONGEST) && !state.is_idle {
             if self.generation != cache.generation() {
-                self.forget(cache.generation());
+                self.clear(cache.generation());
             }
             let pc = state.pc();
             let place = &mut self.places[(pc >> 2) as usize % PLACES];
@@ -145,7 +145,7 @@ impl Native {
 
     /// The code has changed.
     #[cold]
-    fn forget(&mut self, generation: u64) {
+    fn clear(&mut self, generation: u64) {
         self.generation = generation;
         self.regions.clear();
         self.count = 0;
@@ -201,7 +201,7 @@ impl Native {
         handover.touched = 0;
         let number = region.piece.run(handover, &mut state.regs, ram, marks);
         if handover.touched != 0 {
-            ram.touch();
+            ram.mark_touched();
         }
         account.lowest = handover.stack.lowest;
         let went_on = handover.time.packets != account.packets;

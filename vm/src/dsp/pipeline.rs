@@ -150,7 +150,7 @@ impl State {
 
     /// Continues at an address, with nothing in flight.
     pub fn set_pc(&mut self, pc: u32) {
-        self.settle();
+        self.land_all();
         self.pc = pc;
     }
 
@@ -218,7 +218,7 @@ impl State {
     ///
     /// Source: `dsp-board.md` 4.2. The caller has tested [`is_interruptible`](Self::is_interruptible).
     pub fn take_timer_interrupt(&mut self, overhead: u64) {
-        self.settle();
+        self.land_all();
         self.clock.cycle += overhead;
         self.control[IFR] &= !TIMER;
         self.control[IRP] = self.pc;
@@ -229,14 +229,14 @@ impl State {
 
     /// Lets everything in flight land, and then cycles pass in which nothing is executed.
     pub fn wait(&mut self, cycles: u64) {
-        self.settle();
+        self.land_all();
         self.clock.cycle += cycles;
     }
 
     /// Lets everything in flight land, as the processor does before it handles an interrupt.
     ///
     /// Branches in flight are lost; where an interrupt is possible there are none.
-    pub fn settle(&mut self) {
+    pub fn land_all(&mut self) {
         if self.flight.is_empty() {
             return;
         }
@@ -396,7 +396,7 @@ impl State {
             let passed = next.min(cycles);
             self.clock.cycle += u64::from(passed);
             self.flight.due >>= passed;
-            if next == passed && self.arrive() == CyclesEnd::Branched {
+            if next == passed && self.land_due() == CyclesEnd::Branched {
                 return CyclesEnd::Branched;
             }
             cycles -= passed;
@@ -411,12 +411,12 @@ impl State {
     fn pass(&mut self) -> CyclesEnd {
         self.clock.cycle += 1;
         self.flight.due >>= 1;
-        if self.flight.due & 1 == 0 { CyclesEnd::Through } else { self.arrive() }
+        if self.flight.due & 1 == 0 { CyclesEnd::Through } else { self.land_due() }
     }
 
     /// Applies the effects that are due in this cycle.
     #[inline(always)]
-    fn arrive(&mut self) -> CyclesEnd {
+    fn land_due(&mut self) -> CyclesEnd {
         let slot = self.slot(0);
         let mut mask = std::mem::take(&mut self.flight.masks[slot]);
         let values = &self.flight.values[slot];

@@ -186,7 +186,7 @@ impl Processor {
             match halt {
                 // No thread has stops: they are of a board that runs a firmware.
                 Halt::Preempted | Halt::Stopped => {
-                    self.core.state.settle();
+                    self.core.state.land_all();
                     return Ok(Stop::Preempted);
                 }
                 Halt::Left(CALLBACK_RETURN) if id == ContextId::CALLBACK => return Ok(Stop::Ended),
@@ -252,7 +252,7 @@ impl Processor {
         slice: &mut Slice<'_, F>,
         address: GuestAddr,
     ) -> Result<Option<Stop>, TrapKind> {
-        self.core.state.settle();
+        self.core.state.land_all();
         let Self { core, arguments, .. } = self;
         let Some(signature) = slice.firmware.signature(address) else {
             return Err(TrapKind::BadCallTarget { addr: address });

@@ -182,7 +182,7 @@ impl<'a, 'm: 'a> Activation<'a, 'm> {
     ///
     /// Memory does not change; but the host's compiler now knows the value of the register and need not load it.
     #[inline(always)]
-    pub(super) fn recall(&self, place: usize, slot: u64) {
+    pub(super) fn store_last_value(&self, place: usize, slot: u64) {
         if let Some(word) = self.code.first() {
             self.window[usize::from(word.register(place))].set(slot);
         }

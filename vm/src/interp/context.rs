@@ -136,7 +136,7 @@ impl Calls {
 
     /// Returns to the caller; yields the caller's window among `registers`, or `None` if there is no caller.
     #[inline(always)]
-    pub(super) fn leave<'a>(&mut self, registers: &'a [Cell<u64>]) -> Option<&'a Window> {
+    pub(super) fn pop_call<'a>(&mut self, registers: &'a [Cell<u64>]) -> Option<&'a Window> {
         let caller = self.frames.pop()?;
         self.pc = caller.pc;
         self.current = caller;
@@ -244,13 +244,13 @@ impl Context {
         calls.current = Frame { pc: 0, base: 0, registers: 0, mark: 0, stack_pointer: stack.top };
         calls.stack = stack;
         calls.lowest = stack.top;
-        calls.jumps.forget();
+        calls.jumps.clear();
         calls.pc = function.0 as usize;
         calls.result = 0;
         self.pending = Some(function);
         self.split = None;
         if let Some(filter) = &self.filter {
-            filter.forget();
+            filter.clear();
         }
     }
 

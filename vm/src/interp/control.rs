@@ -116,7 +116,7 @@ impl<'m> Activation<'_, 'm> {
 
     #[inline(always)]
     fn leave_call(&mut self) -> Flow {
-        match self.state.calls.leave(self.state.registers) {
+        match self.state.calls.pop_call(self.state.registers) {
             Some(window) => self.go_to_call(window),
             None => Flow::Leave(Exit::Ended),
         }

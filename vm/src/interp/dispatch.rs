@@ -114,7 +114,9 @@ macro_rules! define_handlers {
     ($($name:ident: $first:ident $([$recalled:ident = $last:ident])? $($step:ident $(($($link:ident),+))?)*;)*) => {
         mod handler {
             use super::super::sequences::place_in;
-            use super::{Activation, AssignedRegisters, Flow, Sdram, Slot, State, Window, Words, go_on, go_to, leave, lost, step};
+            use super::{
+                Activation, AssignedRegisters, Flow, Sdram, Slot, State, Window, Words, go_on, go_to, leave, lost, step,
+            };
 
             $(
                 pub(super) fn $name<'m>(
@@ -132,7 +134,7 @@ macro_rules! define_handlers {
                     }
                     $(
                         let place = const { place_in(stringify!($first), stringify!($recalled)) };
-                        activation.recall(place, activation.$last.into_slot());
+                        activation.store_last_value(place, activation.$last.into_slot());
                     )?
                     run!(activation, [0; 2], $first $($step $(($($link),+))?)*);
                 }

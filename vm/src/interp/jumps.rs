@@ -45,7 +45,7 @@ pub(super) struct Jumps {
 
 impl Jumps {
     /// Drops all jump points. Their numbers are not reused.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.points.clear();
     }
 

@@ -185,12 +185,12 @@ impl Observer {
 
     /// An observer of other contexts of the same machine.
     #[cfg(feature = "native")]
-    pub(crate) fn beside(&self) -> Self {
+    pub(crate) fn for_other_contexts(&self) -> Self {
         Self { reports_all: self.reports_all, owners: Arc::clone(&self.owners), ..Self::default() }
     }
 
     /// Drops all knowledge of programs.
-    pub(crate) fn forget(&mut self) {
+    pub(crate) fn clear(&mut self) {
         let owners = Arc::clone(&self.owners);
         *self = Self { reports_all: self.reports_all, owners, ..Self::default() };
     }
@@ -246,7 +246,7 @@ impl Observer {
         let repeats = slice.firmware.accessed(&access, slice.memory);
         let Some(filter) = filter else { return };
         if slice.firmware.take_ordering() {
-            filter.forget();
+            filter.clear();
         } else if repeats == RepeatPolicy::Redundant && size <= 8 {
             filter.note(word, address.get());
         }

@@ -32,7 +32,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         if self.config.preemption == Preemption::Segments {
             return Cycles::default();
         }
-        let bits = mixed(self.tick);
+        let bits = mix_tick(self.tick);
         if !self.is_image(self.turn) {
             return Cycles::new((bits % UNEVENNESS).cast_signed());
         }
@@ -62,7 +62,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
 ///
 /// The length of the firmware's interrupt varies. Slices of equal length would end at the same point of a loop every
 /// time, or never at that point.
-fn mixed(tick: Ticks) -> u64 {
+fn mix_tick(tick: Ticks) -> u64 {
     let mut bits = tick.get().wrapping_mul(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);

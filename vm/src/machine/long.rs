@@ -62,7 +62,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         let ticks = limit.get().saturating_sub(self.tick.get()).min(self.firmware.quiet_slices(&self.memory));
         let slices = (ticks / 2).min(MOST_SLICES);
         let each = Cycles::PER_TICK - self.servo_time();
-        let debt = self.threads.debt(thread);
+        let debt = self.threads.overdraft(thread);
         // No block may take a whole slice: it would be skipped.
         let longest = debt.max(self.longest_steps[thread.index()]);
         let is_callback_set = !self.firmware.callback(&self.memory).is_null();

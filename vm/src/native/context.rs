@@ -257,7 +257,7 @@ impl Context {
         let state = self.fiber.state();
         slice.budget = Cycles::new(state.budget.get());
         if state.signs.touched.take() != 0 {
-            slice.memory.touch();
+            slice.memory.mark_touched();
         }
         request
     }
@@ -421,7 +421,7 @@ impl Context {
         let arguments = self.arguments.gather(parameters, |position, _| given[position].get());
         let outcome = slice.call_firmware(id, address, arguments, self.program.address_of(self.at))?;
         if slice.firmware.take_ordering() {
-            self.fiber.state().filter.forget();
+            self.fiber.state().filter.clear();
         }
         Ok(match outcome {
             Outcome::Done(value) => NextStep::Go(Answer::Slot(value.into_slot())),

@@ -216,7 +216,7 @@ impl State {
         self.stack.lowest.set(stack.top);
         self.stack.top.set(stack.top);
         self.exchange.arguments.iter().for_each(|argument| argument.set(0));
-        self.filter.forget();
+        self.filter.clear();
     }
 
     /// Sets where compiled code may store without asking, as offsets in SDRAM.

@@ -570,7 +570,7 @@ impl<'a, 'b> Translator<'a, 'b> {
     }
 
     /// The value of `class` from a register slot; unchanged if it is not a slot.
-    fn unslot(&mut self, class: Class, slot: Value) -> Value {
+    fn read_slot(&mut self, class: Class, slot: Value) -> Value {
         if self.builder.func.dfg.value_type(slot) == type_of(class) {
             return slot;
         }
@@ -654,7 +654,7 @@ impl<'a, 'b> Translator<'a, 'b> {
 
     /// Ends the block with a request that never returns to the context.
     fn trap(&mut self, reason: Reason, a: Value) {
-        self.settle();
+        self.settle_budget();
         let none = self.builder.ins().iconst(types::I64, 0);
         self.request(reason.code(), self.at, a, none);
         self.builder.ins().trap(RESUMED_BEHIND_TRAP);

@@ -171,7 +171,7 @@ impl Body<'_> {
 
     /// Checks that every path through the function and each of its loops has a charge.
     fn check_charges(&self) -> Result<(), VerifyError> {
-        let found = meter::uncharged(&self.program.ops, self.function.body.clone());
+        let found = meter::find_uncharged(&self.program.ops, self.function.body.clone());
         found.map_or(Ok(()), |at| Err(VerifyError { at, kind: VerifyErrorKind::Uncharged }))
     }
 }

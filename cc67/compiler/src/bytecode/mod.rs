@@ -87,7 +87,7 @@ impl Generator {
             return Err(too_large(ir.span, name));
         }
         meter::insert_charges(&mut code);
-        let places = variables::PlacedWords::take(&mut code);
+        let places = variables::PlacedWords::take_from(&mut code);
         let added = self.text.append(ir.signature, &registers, size, code);
         let (variables, inlined) = places.collect(&ir, &frame, &registers, &added.words);
         Ok(GeneratedFunction { text: added, frame: size, variables, inlined, exceeded: Vec::new() })

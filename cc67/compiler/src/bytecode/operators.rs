@@ -7,7 +7,7 @@ use crate::ir::operators::{BinaryOp, CompareOp};
 
 /// The instruction for operators that legal IR does not have: the program stops there, as a wrong instruction would
 /// continue with a wrong result.
-pub(super) fn illegal() -> Op {
+pub(super) fn illegal_op() -> Op {
     debug_assert!(false, "the IR is verified and legal");
     Op::Unreachable {}
 }
@@ -18,7 +18,7 @@ pub(super) type Immediate = fn(RegI32, RegI32, Imm16) -> Op;
 /// Expands a column of a table: the instruction with this name, or the illegal one for `-`.
 macro_rules! instruction {
     (-, $dst:ident, $a:ident, $b:ident) => {
-        illegal()
+        illegal_op()
     };
     ($op:ident, $dst:ident, $a:ident, $b:ident) => {
         Op::$op { $dst, $a, $b }

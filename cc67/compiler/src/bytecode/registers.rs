@@ -31,7 +31,7 @@ pub(super) struct Registers {
 
 impl Registers {
     /// The register of a value.
-    pub(super) fn of(&self, value: ValueId) -> u16 {
+    pub(super) fn register_of(&self, value: ValueId) -> u16 {
         self.numbers[value]
     }
 
@@ -78,7 +78,7 @@ pub(super) fn assign(function: &Function, prologue: &[Inst], keeps_variables: bo
     let before = function.params.iter().copied().chain(prologue.iter().filter_map(|inst| inst.kind.dst()));
     for value in before {
         // The first block may be the head of a loop, and these values are not written again in it.
-        scan.mention(value, 0, entry.into(), Mention::Read);
+        scan.record_use(value, 0, entry.into(), Mention::Read);
     }
     let kept = || {
         function.source.variables.iter().filter(|_| keeps_variables).filter_map(|variable| {
@@ -89,11 +89,11 @@ pub(super) fn assign(function: &Function, prologue: &[Inst], keeps_variables: bo
         })
     };
     for value in kept() {
-        scan.mention(value, 0, entry.into(), Mention::Read);
+        scan.record_use(value, 0, entry.into(), Mention::Read);
     }
     let loops = scan.function(function);
     for value in kept() {
-        scan.mention(value, scan.position, entry.into(), Mention::Read);
+        scan.record_use(value, scan.position, entry.into(), Mention::Read);
     }
     scan.extend(&loops);
     scan.allocate(function)
@@ -115,7 +115,7 @@ struct Scan {
 }
 
 impl Scan {
-    fn mention(&mut self, value: ValueId, position: u32, block: PackedOption<BlockId>, how: Mention) {
+    fn record_use(&mut self, value: ValueId, position: u32, block: PackedOption<BlockId>, how: Mention) {
         let interval = &mut self.intervals[value];
         if interval.block.is_none() {
             // A value that is read first keeps the 0 that the machine puts into fresh registers.
@@ -130,7 +130,7 @@ impl Scan {
 
     fn read(&mut self, operand: Operand, block: BlockId) {
         if let Operand::Value(value) = operand {
-            self.mention(value, self.position, block.into(), Mention::Read);
+            self.record_use(value, self.position, block.into(), Mention::Read);
         }
     }
 
@@ -152,7 +152,7 @@ impl Scan {
                     }
                 }
                 if let Some(dst) = inst.kind.dst() {
-                    self.mention(dst, self.position + 1, id.into(), Mention::Write);
+                    self.record_use(dst, self.position + 1, id.into(), Mention::Write);
                 }
                 self.position += 2;
             }
@@ -180,10 +180,10 @@ impl Scan {
             if !interval.is_global {
                 continue;
             }
-            if let Some((start, _)) = enclosing(&merged, interval.start) {
+            if let Some((start, _)) = enclosing_range(&merged, interval.start) {
                 interval.start = interval.start.min(start);
             }
-            if let Some((_, end)) = enclosing(&merged, interval.end) {
+            if let Some((_, end)) = enclosing_range(&merged, interval.end) {
                 interval.end = interval.end.max(end);
             }
         }
@@ -250,7 +250,7 @@ fn merge(loops: &[(u32, u32)]) -> Vec<(u32, u32)> {
 }
 
 /// The range that holds a position.
-fn enclosing(ranges: &[(u32, u32)], position: u32) -> Option<(u32, u32)> {
+fn enclosing_range(ranges: &[(u32, u32)], position: u32) -> Option<(u32, u32)> {
     let index = ranges.partition_point(|(_, end)| *end < position);
     ranges.get(index).copied().filter(|(start, _)| *start <= position)
 }

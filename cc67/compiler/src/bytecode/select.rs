@@ -80,7 +80,7 @@ struct Selector<'a> {
 impl Selector<'_> {
     fn function(&mut self) {
         let function = self.function;
-        self.at(CodeOrigin::of(function.span));
+        self.set_origin(CodeOrigin::of(function.span));
         for inst in &self.frame.prologue {
             self.inst(&inst.kind);
         }
@@ -89,11 +89,11 @@ impl Selector<'_> {
             let block = &function.blocks[id];
             for inst in &block.insts {
                 self.code.insts.push(self.code.ops.len() as u32);
-                self.at(inst.origin);
+                self.set_origin(inst.origin);
                 self.inst(&inst.kind);
             }
             self.code.insts.push(self.code.ops.len() as u32);
-            self.at(block.origin);
+            self.set_origin(block.origin);
             self.terminator(&block.terminator, function.layout.get(index + 1).copied());
         }
         for at in &self.branches {
@@ -104,10 +104,10 @@ impl Selector<'_> {
     }
 
     /// Sets the source position of the words that follow.
-    fn at(&mut self, origin: CodeOrigin) {
+    fn set_origin(&mut self, origin: CodeOrigin) {
         let word = self.code.ops.len() as u32;
-        begin(&mut self.code.spans, word, origin.span);
-        begin(&mut self.code.calls, word, origin.call);
+        begin_run(&mut self.code.spans, word, origin.span);
+        begin_run(&mut self.code.calls, word, origin.call);
     }
 
     fn push(&mut self, op: Op) {
@@ -115,19 +115,19 @@ impl Selector<'_> {
     }
 
     fn int(&self, value: ValueId) -> RegI32 {
-        RegI32(self.registers.of(value))
+        RegI32(self.registers.register_of(value))
     }
 
     fn long(&self, value: ValueId) -> RegI64 {
-        RegI64(self.registers.of(value))
+        RegI64(self.registers.register_of(value))
     }
 
     fn single(&self, value: ValueId) -> RegF32 {
-        RegF32(self.registers.of(value))
+        RegF32(self.registers.register_of(value))
     }
 
     fn double(&self, value: ValueId) -> RegF64 {
-        RegF64(self.registers.of(value))
+        RegF64(self.registers.register_of(value))
     }
 
     /// The value of a legal operand that is not an immediate.
@@ -196,7 +196,7 @@ impl Selector<'_> {
     }
 
     fn copy(&mut self, dst: ValueId, src: ValueId) {
-        if self.registers.of(dst) == self.registers.of(src) {
+        if self.registers.register_of(dst) == self.registers.register_of(src) {
             return;
         }
         self.push(match self.class(dst) {
@@ -212,13 +212,13 @@ impl Selector<'_> {
         self.push(match (op, self.class(dst)) {
             (UnaryOp::Negate, Class::F32) => Op::NegF32 { dst: self.single(dst), src: self.single(src) },
             (UnaryOp::Negate, Class::F64) => Op::NegF64 { dst: self.double(dst), src: self.double(src) },
-            (UnaryOp::Negate, Class::I32 | Class::I64) | (UnaryOp::Complement, _) => operators::illegal(),
+            (UnaryOp::Negate, Class::I32 | Class::I64) | (UnaryOp::Complement, _) => operators::illegal_op(),
         });
     }
 
     fn binary_immediate(&mut self, op: BinaryOp, dst: ValueId, a: ValueId, imm: i32) {
         let (dst, a, imm) = (self.int(dst), self.int(a), Imm16(imm as i16));
-        self.push(operators::immediate(op).map_or_else(operators::illegal, |form| form(dst, a, imm)));
+        self.push(operators::immediate(op).map_or_else(operators::illegal_op, |form| form(dst, a, imm)));
     }
 
     fn binary(&mut self, op: BinaryOp, dst: ValueId, a: ValueId, b: ValueId) {
@@ -297,7 +297,7 @@ impl Selector<'_> {
             });
             return;
         }
-        let addr = self.absolute(address);
+        let addr = self.absolute_address(address);
         self.push(match width {
             Width::I8 => Op::LoadI8SAt { dst: int, addr },
             Width::U8 => Op::LoadI8UAt { dst: int, addr },
@@ -324,7 +324,7 @@ impl Selector<'_> {
             });
             return;
         }
-        let addr = self.absolute(address);
+        let addr = self.absolute_address(address);
         self.push(match width {
             Width::I8 | Width::U8 => Op::StoreI8At { src: int, addr },
             Width::I16 | Width::U16 => Op::StoreI16At { src: int, addr },
@@ -336,7 +336,7 @@ impl Selector<'_> {
     }
 
     /// The address in a word about to be pushed: a number, or relative to a symbol.
-    fn absolute(&mut self, address: Address) -> Addr {
+    fn absolute_address(&mut self, address: Address) -> Addr {
         if let Base::Symbol(symbol) = address.base {
             self.relocate(RelocationKind::Address, symbol);
         }
@@ -450,7 +450,7 @@ impl Selector<'_> {
 }
 
 /// Begins a run of words with the attribute `what`, unless the current run has the same.
-fn begin<T: PartialEq>(runs: &mut Vec<(u32, T)>, word: u32, what: T) {
+fn begin_run<T: PartialEq>(runs: &mut Vec<(u32, T)>, word: u32, what: T) {
     match runs.last_mut() {
         Some((_, last)) if *last == what => {}
         Some((at, last)) if *at == word => *last = what,

@@ -11,7 +11,11 @@ use crate::relocation::{Relocation, RelocationKind};
 
 /// A function in the instructions of the machine: its frame as a comment, and the instructions that are executed once
 /// as a separate block before the first.
-pub(crate) fn legalized(mut function: Function, signatures: &Signatures, names: &dyn SymbolNames) -> String {
+pub(crate) fn print_legalized(
+    mut function: Function,
+    signatures: &Signatures,
+    names: &dyn SymbolNames,
+) -> String {
     let frame = legalize::legalize(&mut function);
     if let (false, Some(&entry)) = (frame.prologue.is_empty(), function.layout.first()) {
         let (terminator, origin) = (Terminator::Jump(entry), CodeOrigin::of(function.span));
@@ -35,9 +39,9 @@ pub(crate) fn legalized(mut function: Function, signatures: &Signatures, names: 
 }
 
 /// The words of a function; words that the linker completes show the names of their symbols.
-pub(crate) fn words(text: &Text, generated: &GeneratedFunction, names: &dyn SymbolNames) -> String {
+pub(crate) fn print_words(text: &Text, generated: &GeneratedFunction, names: &dyn SymbolNames) -> String {
     let mut shown = String::new();
-    for (number, op) in text.numbered(&generated.text.words) {
+    for (number, op) in text.numbered_words(&generated.text.words) {
         let _ = write!(shown, "@{number}: {op}");
         let relocation = generated.text.relocations.iter().find(|relocation| relocation.word == number);
         if let Some(Relocation { kind, symbol, .. }) = relocation {

@@ -50,7 +50,7 @@ impl Text {
     }
 
     /// The words of a range, each with its number.
-    pub(super) fn numbered(&self, words: &Range<u32>) -> impl Iterator<Item = (u32, &Op)> {
+    pub(super) fn numbered_words(&self, words: &Range<u32>) -> impl Iterator<Item = (u32, &Op)> {
         (words.clone()).zip(self.0.get(words.start as usize..words.end as usize).unwrap_or_default())
     }
 
@@ -70,7 +70,7 @@ impl Text {
             self.0.push(Op::Types { classes: Classes(head::bits(classes)) });
         }
         let start = self.len();
-        self.0.extend(code.ops.into_iter().map(|op| moved(op, start)));
+        self.0.extend(code.ops.into_iter().map(|op| offset_label(op, start)));
         let moved = |relocation: Relocation| Relocation { word: relocation.word + start, ..relocation };
         // The function's own line begins at its `func` word.
         let place = |(index, (word, span)): (usize, (u32, Span))| {
@@ -84,7 +84,7 @@ impl Text {
     }
 
     /// The bytes of each of these words in a program.
-    pub(crate) fn linked<'a>(
+    pub(crate) fn linked_bytes<'a>(
         &'a self,
         words: Range<u32>,
         numbers: &'a Renumbering<'_>,
@@ -96,7 +96,7 @@ impl Text {
     /// Appends the bytes of all words to `bytes`, for an object file that has `head` words before them.
     pub(crate) fn write(&self, head: u32, bytes: &mut Vec<u8>) {
         for op in &self.0 {
-            bytes.extend_from_slice(&moved(*op, head).encode());
+            bytes.extend_from_slice(&offset_label(*op, head).encode());
         }
     }
 
@@ -189,7 +189,7 @@ pub(crate) fn call_firmware(address: u32, signature: u16) -> [u8; WORD] {
 }
 
 /// The instruction with its label moved.
-fn moved(mut op: Op, by: u32) -> Op {
+fn offset_label(mut op: Op, by: u32) -> Op {
     patch::labels(&mut op, |word| word + by);
     op
 }

@@ -73,7 +73,7 @@ pub(super) struct PlacedWords {
 
 impl PlacedWords {
     /// Takes it out of the code.
-    pub(super) fn take(code: &mut Code) -> Self {
+    pub(super) fn take_from(code: &mut Code) -> Self {
         Self { insts: std::mem::take(&mut code.insts), calls: std::mem::take(&mut code.calls) }
     }
 
@@ -134,11 +134,11 @@ impl Finder<'_> {
         match home {
             VariableHome::Slot(slot) => Some((all, Location::Frame(self.frame.offsets[slot]))),
             VariableHome::Pointer(value) => {
-                Some((self.range(value)?, Location::Pointer(self.registers.of(value))))
+                Some((self.range(value)?, Location::Pointer(self.registers.register_of(value))))
             }
             // If a write was removed, the register may hold an older value.
             VariableHome::Value(value, writes) if self.writes[value] == writes => {
-                Some((self.range(value)?, Location::Register(self.registers.of(value))))
+                Some((self.range(value)?, Location::Register(self.registers.register_of(value))))
             }
             VariableHome::Value(..) => None,
             VariableHome::Constant(bits) => Some((all, Location::Constant(bits))),

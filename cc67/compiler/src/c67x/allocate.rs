@@ -25,7 +25,7 @@ pub(super) struct Assignment {
 
 impl Assignment {
     /// The register; of a pair the even one.
-    pub(super) fn of(&self, reg: VReg) -> Reg {
+    pub(super) fn register_of(&self, reg: VReg) -> Reg {
         Reg::from_index(usize::from(self.regs[reg])).unwrap_or(abi::RESULT)
     }
 
@@ -97,9 +97,9 @@ impl<'a> Scan<'a> {
     fn run(&mut self, order: &[VReg]) -> Option<()> {
         for reg in order {
             let interval = self.liveness.intervals[*reg];
-            let allowed = sides::allowed_registers(&self.code.regs[*reg]) & !self.changed(interval);
+            let allowed = sides::allowed_registers(&self.code.regs[*reg]) & !self.call_clobbers(interval);
             match self.free(*reg, allowed, interval.start) {
-                Some(found) => self.take(*reg, found, interval.end),
+                Some(found) => self.occupy(*reg, found, interval.end),
                 None => self.evict(*reg, interval, allowed)?,
             }
         }
@@ -107,7 +107,7 @@ impl<'a> Scan<'a> {
     }
 
     /// The registers that calls inside an interval change.
-    fn changed(&self, interval: Interval) -> u64 {
+    fn call_clobbers(&self, interval: Interval) -> u64 {
         let calls = &self.liveness.calls;
         let first = calls.partition_point(|(at, _)| *at < interval.start);
         let mut changed = 0;
@@ -122,7 +122,7 @@ impl<'a> Scan<'a> {
     }
 
     /// The physical registers occupied by a virtual register that is assigned to `reg`.
-    fn whole(&self, reg: VReg, at: Reg) -> u64 {
+    fn occupied_registers(&self, reg: VReg, at: Reg) -> u64 {
         if self.code.regs[reg].is_pair { abi::bit(at) | abi::bit(at.pair().high()) } else { abi::bit(at) }
     }
 
@@ -130,7 +130,7 @@ impl<'a> Scan<'a> {
     fn free(&self, reg: VReg, allowed: u64, start: u32) -> Option<Reg> {
         let info = &self.code.regs[reg];
         let is_free = |at: Reg| {
-            let whole = self.whole(reg, at);
+            let whole = self.occupied_registers(reg, at);
             (!info.is_pair || at.number().is_multiple_of(2))
                 && whole & !allowed == 0
                 && abi::registers(whole).all(|one| self.taken[one.index()] < start)
@@ -141,10 +141,10 @@ impl<'a> Scan<'a> {
         let around = self.loop_at(start).filter(|_| self.is_wide);
         let is_long = self.is_wide && !info.is_pair && self.lives_through_loop(reg);
         let key = |at: &Reg| {
-            let whole = self.whole(reg, *at);
+            let whole = self.occupied_registers(reg, *at);
             let is_new = around.is_none() && whole & abi::KEPT & !self.used != 0;
             let is_rare = !info.is_condition && whole & abi::CONDITIONS != 0;
-            let is_shared = info.is_pair && around.is_some_and(|first| self.joins(whole, first));
+            let is_shared = info.is_pair && around.is_some_and(|first| self.conflicts_in_loop(whole, first));
             let breaks = is_long && self.breaks_pair(reg, *at, start);
             (is_new, is_shared, is_rare, breaks, self.taken[at.index()], at.index())
         };
@@ -154,7 +154,7 @@ impl<'a> Scan<'a> {
     /// Reports whether a pair in a loop that begins at `first` would share its registers with another value of an
     /// iteration, or leave no register of its side for conditions: results of the same register limit the overlap of
     /// iterations.
-    fn joins(&self, whole: u64, first: u32) -> bool {
+    fn conflicts_in_loop(&self, whole: u64, first: u32) -> bool {
         let is_taken = |one: Reg| self.taken[one.index()] >= first;
         let side = abi::registers(whole).next().map_or(0, |one| abi::file(one.side()));
         let tested = side & abi::CONDITIONS;
@@ -182,9 +182,9 @@ impl<'a> Scan<'a> {
         !self.code.regs[reg].is_pair && self.taken[other.index()] < start
     }
 
-    fn take(&mut self, reg: VReg, at: Reg, end: u32) {
+    fn occupy(&mut self, reg: VReg, at: Reg, end: u32) {
         self.regs[reg] = at.index() as u8;
-        for one in abi::registers(self.whole(reg, at)) {
+        for one in abi::registers(self.occupied_registers(reg, at)) {
             self.taken[one.index()] = end;
             self.holder[one.index()] = Some(reg);
             self.used |= abi::bit(one);
@@ -197,7 +197,7 @@ impl<'a> Scan<'a> {
         let own = if info.is_short { f32::INFINITY } else { self.cost(reg) };
         let mut best: Option<(f32, Reg)> = None;
         for at in abi::registers(allowed).filter(|at| !info.is_pair || at.number().is_multiple_of(2)) {
-            let whole = self.whole(reg, at);
+            let whole = self.occupied_registers(reg, at);
             if whole & !allowed != 0 {
                 continue;
             }
@@ -211,19 +211,21 @@ impl<'a> Scan<'a> {
         }
         match best {
             Some((cost, at)) if cost < own => {
-                for one in abi::registers(self.whole(reg, at)) {
+                for one in abi::registers(self.occupied_registers(reg, at)) {
                     if self.taken[one.index()] >= interval.start
                         && let Some(holder) = self.holder[one.index()]
                         && !std::mem::replace(&mut self.is_moved[holder], true)
                     {
                         self.moved.push(holder);
                         // The other half of an evicted pair is free too.
-                        for half in abi::registers(self.whole(holder, self.at(holder))) {
+                        for half in
+                            abi::registers(self.occupied_registers(holder, self.assigned_register(holder)))
+                        {
                             self.taken[half.index()] = interval.start - 1;
                         }
                     }
                 }
-                self.take(reg, at, interval.end);
+                self.occupy(reg, at, interval.end);
                 Some(())
             }
             _ if !info.is_short => {
@@ -234,7 +236,7 @@ impl<'a> Scan<'a> {
         }
     }
 
-    fn at(&self, reg: VReg) -> Reg {
+    fn assigned_register(&self, reg: VReg) -> Reg {
         Reg::from_index(usize::from(self.regs[reg])).unwrap_or(abi::RESULT)
     }
 

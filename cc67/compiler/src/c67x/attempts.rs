@@ -33,8 +33,8 @@ pub(super) struct Attempt {
 
 impl Attempt {
     /// Its words.
-    fn words(&self) -> u32 {
-        self.regions.iter().fold(0, |at, region| refine::end(region, at))
+    fn word_count(&self) -> u32 {
+        self.regions.iter().fold(0, |at, region| refine::end_address(region, at))
     }
 
     /// Its cycles, with an estimate of the frequency of each region.
@@ -54,7 +54,7 @@ impl Attempt {
 ///
 /// # Errors
 /// The function is too large for the processor.
-pub(super) fn best(ir: &Function, code: Code, level: Level) -> Result<Attempt, TooLarge> {
+pub(super) fn best_attempt(ir: &Function, code: Code, level: Level) -> Result<Attempt, TooLarge> {
     let insts = code.blocks.iter().map(|block| block.insts.len()).sum::<usize>();
     let insts = u32::try_from(insts).unwrap_or(u32::MAX);
     let work = WorkBudget(WORK.saturating_add(insts.saturating_mul(WORK_PER_INST)));
@@ -90,7 +90,7 @@ impl Attempts<'_> {
             return frame;
         }
         let register = self.schedule(assigned, ReturnAddress::Register)?;
-        frame.map(|frame| if register.words() <= frame.words() { register } else { frame })
+        frame.map(|frame| if register.word_count() <= frame.word_count() { register } else { frame })
     }
 
     /// The fastest of some ways to unroll loops and to share registers between the sides.
@@ -163,8 +163,8 @@ impl Attempts<'_> {
         } else {
             let mut at = 0;
             let in_place = |region| {
-                let scheduled = self.memo.of(region).plain(order, at);
-                at = refine::end(&scheduled, at);
+                let scheduled = self.memo.entry(region).scheduled(order, at);
+                at = refine::end_address(&scheduled, at);
                 scheduled
             };
             expanded.regions.into_iter().map(in_place).collect()

@@ -172,7 +172,7 @@ impl Inst {
     }
 
     /// The register that is written, and whether its old contents are replaced completely.
-    pub(super) fn written(&self) -> Option<(VReg, bool)> {
+    pub(super) fn written_register(&self) -> Option<(VReg, bool)> {
         match self.dst {
             Arg::Reg(reg) => Some((reg, !self.keeps_destination())),
             Arg::Low(reg) | Arg::High(reg) => Some((reg, false)),
@@ -181,7 +181,7 @@ impl Inst {
     }
 
     /// The base register that a load or store increments.
-    pub(super) fn stepped(&self) -> Option<VReg> {
+    pub(super) fn incremented_base(&self) -> Option<VReg> {
         match self.place {
             Some(MemoryPlace { base: Base::Reg(reg), step, .. }) if step != 0 => Some(reg),
             _ => None,

@@ -41,8 +41,8 @@ const ZERO: Arg = Arg::number(0);
 impl Copies {
     fn inst(&mut self, inst: &mut Inst) {
         if matches!(inst.kind, Kind::Begin | Kind::Call | Kind::FrameAddress) {
-            if let Some((reg, _)) = inst.written() {
-                self.forget(Arg::Reg(reg));
+            if let Some((reg, _)) = inst.written_register() {
+                self.invalidate(Arg::Reg(reg));
             }
             return;
         }
@@ -51,20 +51,20 @@ impl Copies {
         if let Some(place) = &mut inst.place {
             if let Base::Reg(base) = place.base
                 && place.step == 0
-                && let Some(Arg::Reg(reg)) = self.of(Arg::Reg(base))
+                && let Some(Arg::Reg(reg)) = self.source_of(Arg::Reg(base))
             {
                 place.base = Base::Reg(reg);
             }
-            if let Some(Arg::Reg(reg)) = place.index.and_then(|index| self.of(Arg::Reg(index))) {
+            if let Some(Arg::Reg(reg)) = place.index.and_then(|index| self.source_of(Arg::Reg(index))) {
                 place.index = Some(reg);
             }
         }
         self.simplify(inst);
-        if let Some(reg) = inst.stepped() {
-            self.forget(Arg::Reg(reg));
+        if let Some(reg) = inst.incremented_base() {
+            self.invalidate(Arg::Reg(reg));
         }
         if inst.dst.reg().is_some() {
-            self.forget(inst.dst);
+            self.invalidate(inst.dst);
         }
         let is_word = inst.dst.reg().is_some_and(|reg| !matches!(inst.dst, Arg::Reg(_)) || !self.pairs[reg]);
         if inst.condition.is_some() || !is_word {
@@ -78,7 +78,7 @@ impl Copies {
     }
 
     /// The word of which a word is a copy.
-    fn of(&self, arg: Arg) -> Option<Arg> {
+    fn source_of(&self, arg: Arg) -> Option<Arg> {
         self.list.iter().find(|(copy, _)| *copy == arg).map(|(_, from)| *from)
     }
 
@@ -86,18 +86,18 @@ impl Copies {
     fn source(&self, arg: Arg) -> Arg {
         let Some(reg) = arg.reg() else { return arg };
         if matches!(arg, Arg::Reg(_)) && self.pairs[reg] {
-            let halves = (self.of(Arg::Low(reg)), self.of(Arg::High(reg)));
+            let halves = (self.source_of(Arg::Low(reg)), self.source_of(Arg::High(reg)));
             return match halves {
                 (Some(Arg::Low(low)), Some(Arg::High(high))) if low == high => Arg::Reg(low),
                 _ => arg,
             };
         }
-        self.of(arg).filter(|from| from.reg().is_some()).unwrap_or(arg)
+        self.source_of(arg).filter(|from| from.reg().is_some()).unwrap_or(arg)
     }
 
     /// Turns shifts by 0 and combinations with 0 into copies.
     fn simplify(&self, inst: &mut Inst) {
-        let is_zero = |arg: Arg| arg == ZERO || self.of(arg) == Some(ZERO);
+        let is_zero = |arg: Arg| arg == ZERO || self.source_of(arg) == Some(ZERO);
         let is_shift = matches!(inst.kind, Kind::Shl | Kind::Shr | Kind::Shru);
         let is_sum = matches!(inst.kind, Kind::Or | Kind::Add | Kind::Xor);
         if is_shift && inst.src1 == ZERO || is_sum && is_zero(inst.src1) {
@@ -112,7 +112,7 @@ impl Copies {
     fn copy(&self, inst: &mut Inst, from: Arg) {
         if let Arg::Value(_) = from {
             (inst.kind, inst.src1, inst.src2) = (Kind::Mvk, from, Arg::None);
-        } else if self.of(from) == Some(ZERO) {
+        } else if self.source_of(from) == Some(ZERO) {
             (inst.kind, inst.src1, inst.src2) = (Kind::Mvk, ZERO, Arg::None);
         } else {
             (inst.kind, inst.src1, inst.src2) = (Kind::Move, ZERO, from);
@@ -120,7 +120,7 @@ impl Copies {
     }
 
     /// Forgets the copies of a register that changes: of a word of it, or of all.
-    fn forget(&mut self, changed: Arg) {
+    fn invalidate(&mut self, changed: Arg) {
         let touches = |arg: Arg| {
             let is_other_half =
                 matches!((arg, changed), (Arg::Low(_), Arg::High(_)) | (Arg::High(_), Arg::Low(_)));
@@ -151,7 +151,7 @@ fn remove_unread(code: &mut Code) {
             block.insts.retain(|inst| {
                 let is_kept = inst.kind == Kind::Call
                     || inst.kind.bytes().is_some()
-                    || inst.written().is_none_or(|(reg, _)| is_read[reg]);
+                    || inst.written_register().is_none_or(|(reg, _)| is_read[reg]);
                 is_changed |= !is_kept;
                 is_kept
             });

@@ -18,7 +18,7 @@ pub(super) fn run(code: &mut Code) {
     // Even after a copy is removed, its block reads the counter.
     let readers = Readers::new(code);
     for number in 0..code.blocks.len() {
-        let Some((at, count)) = copied(code, &readers, number) else { continue };
+        let Some((at, count)) = copied_counter(code, &readers, number) else { continue };
         code.regs[count].is_condition = true;
         let block = &mut code.blocks[number];
         block.insts.remove(at);
@@ -29,17 +29,20 @@ pub(super) fn run(code: &mut Code) {
 }
 
 /// The copy that is tested by the branch back to a block, and its source, if the source can be tested instead.
-fn copied(code: &Code, readers: &Readers, number: usize) -> Option<(usize, VReg)> {
+fn copied_counter(code: &Code, readers: &Readers, number: usize) -> Option<(usize, VReg)> {
     let block = &code.blocks[number];
     let Terminator::Branch { condition, then, otherwise, .. } = block.terminator else { return None };
     if then != number as u32 && otherwise != number as u32 {
         return None;
     }
-    let at = block.insts.iter().rposition(|inst| inst.written().is_some_and(|(reg, _)| reg == condition))?;
+    let at = block
+        .insts
+        .iter()
+        .rposition(|inst| inst.written_register().is_some_and(|(reg, _)| reg == condition))?;
     let inst = &block.insts[at];
     let Arg::Reg(count) = inst.src2 else { return None };
     let is_copy = inst.kind == Kind::Move && inst.condition.is_none() && !code.regs[count].is_pair;
-    let changes = |inst: &super::code::Inst| inst.written().is_some_and(|(reg, _)| reg == count);
+    let changes = |inst: &super::code::Inst| inst.written_register().is_some_and(|(reg, _)| reg == count);
     let before = block.insts[..at].iter().filter(|inst| changes(inst)).count();
     let is_last = before == 1 && !block.insts[at + 1..].iter().any(changes);
     let mut tested: Vec<VReg> = Vec::new();

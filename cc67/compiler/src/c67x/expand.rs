@@ -166,14 +166,14 @@ impl Expander<'_> {
             self.region.label = number;
             self.region.weight = block.weight();
             if number == 0 {
-                self.enter();
+                self.emit_prologue();
             }
             for inst in &block.insts {
                 self.region.span = inst.span;
                 self.inst(inst);
             }
             self.region.span = block.span;
-            self.end(&block.terminator, number + 1);
+            self.emit_terminator(&block.terminator, number + 1);
         }
     }
 
@@ -194,14 +194,20 @@ impl Expander<'_> {
         }
     }
 
-    fn plain(&mut self, kind: Kind, dst: PhysicalOperand, src1: PhysicalOperand, src2: PhysicalOperand) {
+    fn emit_simple(
+        &mut self,
+        kind: Kind,
+        dst: PhysicalOperand,
+        src1: PhysicalOperand,
+        src2: PhysicalOperand,
+    ) {
         let operands = Operands { dst, src1, src2, mem: None, field: (0, 0), pred: Pred::Always };
         self.emit(kind, &operands, Access::None);
     }
 
     fn move_word(&mut self, to: Reg, from: Reg) {
         let zero = PhysicalOperand::Value(Value::Number(0));
-        self.plain(Kind::Move, PhysicalOperand::Reg(to), zero, PhysicalOperand::Reg(from));
+        self.emit_simple(Kind::Move, PhysicalOperand::Reg(to), zero, PhysicalOperand::Reg(from));
     }
 
     /// A word of the frame that holds a saved register.
@@ -228,11 +234,16 @@ impl Expander<'_> {
     /// `B15 += bytes`
     fn move_stack(&mut self, bytes: i32) {
         let stack = PhysicalOperand::Reg(abi::STACK);
-        self.plain(Kind::Addk, stack, PhysicalOperand::Value(Value::Number(bytes)), PhysicalOperand::None);
+        self.emit_simple(
+            Kind::Addk,
+            stack,
+            PhysicalOperand::Value(Value::Number(bytes)),
+            PhysicalOperand::None,
+        );
     }
 
     /// Emits the steps before the first block.
-    fn enter(&mut self) {
+    fn emit_prologue(&mut self) {
         if self.frame.size > 0 {
             self.move_stack(-self.frame.size.cast_signed());
         }
@@ -246,27 +257,32 @@ impl Expander<'_> {
         for (reg, at) in &self.code.params {
             // A value that is never read has no register.
             if self.finalizer.assignment.is_used(*reg) {
-                self.words(self.finalizer.assignment.of(*reg), *at, self.code.regs[*reg].is_pair, &mut list);
+                self.push_word_moves(
+                    self.finalizer.assignment.register_of(*reg),
+                    *at,
+                    self.code.regs[*reg].is_pair,
+                    &mut list,
+                );
             }
         }
-        self.moves(&list);
+        self.emit_moves(&list);
     }
 
     /// The registers of a value that is at `at`, a bit each.
-    fn whole(&self, value: super::code::VReg, at: Reg) -> u64 {
+    fn occupied_registers(&self, value: super::code::VReg, at: Reg) -> u64 {
         let high = if self.code.regs[value].is_pair { abi::bit(at.pair().high()) } else { 0 };
         abi::bit(at) | high
     }
 
     /// The moves of one value, a word each.
-    fn words(&self, to: Reg, from: Reg, is_pair: bool, list: &mut Vec<(Reg, Reg)>) {
+    fn push_word_moves(&self, to: Reg, from: Reg, is_pair: bool, list: &mut Vec<(Reg, Reg)>) {
         list.push((to, from));
         if is_pair {
             list.push((to.pair().high(), from.pair().high()));
         }
     }
 
-    fn moves(&mut self, list: &[(Reg, Reg)]) {
+    fn emit_moves(&mut self, list: &[(Reg, Reg)]) {
         for (to, from) in moves::in_order(list, abi::CHANGED & !abi::bit(abi::LINK)) {
             self.move_word(to, from);
         }
@@ -279,13 +295,13 @@ impl Expander<'_> {
             (Kind::FrameAddress, Some(place)) => {
                 let dst = self.finalizer.arg(inst.dst);
                 let offset = self.finalizer.offset(place);
-                self.plain(
+                self.emit_simple(
                     Kind::Mvk,
                     dst,
                     PhysicalOperand::Value(Value::Number(offset)),
                     PhysicalOperand::None,
                 );
-                self.plain(Kind::Add, dst, dst, PhysicalOperand::Reg(abi::STACK));
+                self.emit_simple(Kind::Add, dst, dst, PhysicalOperand::Reg(abi::STACK));
             }
             (Kind::LoadPair, Some(place)) if !self.reaches_pair(place) => self.load_halves(inst, place),
             _ => self.ordinary(inst),
@@ -312,7 +328,7 @@ impl Expander<'_> {
     fn ordinary(&mut self, inst: &Inst) {
         let pred = match inst.condition {
             None => Some(Pred::Always),
-            Some((reg, negated)) => pred(self.finalizer.assignment.of(reg), negated),
+            Some((reg, negated)) => pred(self.finalizer.assignment.register_of(reg), negated),
         };
         let Some(pred) = pred else {
             self.is_wrong = true;
@@ -346,22 +362,27 @@ impl Expander<'_> {
     fn call(&mut self, call: &Call, result: Option<super::code::VReg>) {
         let mut list = Vec::new();
         for (reg, at) in &call.arguments {
-            self.words(*at, self.finalizer.assignment.of(*reg), self.code.regs[*reg].is_pair, &mut list);
+            self.push_word_moves(
+                *at,
+                self.finalizer.assignment.register_of(*reg),
+                self.code.regs[*reg].is_pair,
+                &mut list,
+            );
         }
-        self.moves(&list);
+        self.emit_moves(&list);
         let label = self.returns;
         self.returns += 1;
         let link = PhysicalOperand::Reg(abi::LINK);
         let back = PhysicalOperand::Value(Value::Block(label));
-        self.plain(Kind::Mvk, link, back, PhysicalOperand::None);
-        self.plain(Kind::Mvkh, link, back, PhysicalOperand::None);
+        self.emit_simple(Kind::Mvk, link, back, PhysicalOperand::None);
+        self.emit_simple(Kind::Mvkh, link, back, PhysicalOperand::None);
         let target = match call.target {
             CallTarget::Symbol(symbol) => PhysicalOperand::Value(Value::Symbol(symbol, 0)),
             CallTarget::Register => PhysicalOperand::Reg(abi::TARGET),
         };
         let branch = self.branch(target, Pred::Always);
         let passed = call.arguments.iter();
-        let reads = passed.fold(0, |set, (reg, at)| set | self.whole(*reg, *at));
+        let reads = passed.fold(0, |set, (reg, at)| set | self.occupied_registers(*reg, *at));
         self.region.exit_registers = ExitRegisters { reads, changes: call.changes };
         self.close(branch.into_iter().collect());
         self.region.label = label;
@@ -370,9 +391,9 @@ impl Expander<'_> {
         }
         if let Some(result) = result.filter(|result| self.finalizer.assignment.is_used(*result)) {
             let mut list = Vec::new();
-            let to = self.finalizer.assignment.of(result);
-            self.words(to, abi::RESULT, self.code.regs[result].is_pair, &mut list);
-            self.moves(&list);
+            let to = self.finalizer.assignment.register_of(result);
+            self.push_word_moves(to, abi::RESULT, self.code.regs[result].is_pair, &mut list);
+            self.emit_moves(&list);
         }
     }
 
@@ -404,12 +425,12 @@ impl Expander<'_> {
         self.branch(PhysicalOperand::Value(Value::Block(block)), pred)
     }
 
-    fn end(&mut self, end: &Terminator, next: u32) {
+    fn emit_terminator(&mut self, end: &Terminator, next: u32) {
         let branches = match *end {
             Terminator::Jump(to) if to == next => Vec::new(),
             Terminator::Jump(to) => self.jump(to, Pred::Always).into_iter().collect(),
             Terminator::Branch { condition, negated, then, otherwise } => {
-                let at = self.finalizer.assignment.of(condition);
+                let at = self.finalizer.assignment.register_of(condition);
                 let (Some(yes), Some(no)) = (pred(at, negated), pred(at, !negated)) else {
                     self.is_wrong = true;
                     return;
@@ -425,25 +446,25 @@ impl Expander<'_> {
             }
             Terminator::Table { address, .. } => {
                 self.region.exit_registers.reads = !0;
-                let at = self.finalizer.assignment.of(address);
+                let at = self.finalizer.assignment.register_of(address);
                 self.branch(PhysicalOperand::Reg(at), Pred::Always).into_iter().collect()
             }
-            Terminator::Return(value) => self.leave(value),
+            Terminator::Return(value) => self.emit_epilogue(value),
             // Execution that gets here by mistake leaves the function.
-            Terminator::Unreachable => self.leave(None),
+            Terminator::Unreachable => self.emit_epilogue(None),
         };
         self.close(branches);
     }
 
     /// The end of the function.
-    fn leave(&mut self, value: Option<super::code::VReg>) -> Vec<Step> {
+    fn emit_epilogue(&mut self, value: Option<super::code::VReg>) -> Vec<Step> {
         self.region.exit_registers.reads = abi::KEPT | abi::bit(abi::STACK);
         if let Some(value) = value {
-            self.region.exit_registers.reads |= self.whole(value, abi::RESULT);
+            self.region.exit_registers.reads |= self.occupied_registers(value, abi::RESULT);
             let mut list = Vec::new();
-            let from = self.finalizer.assignment.of(value);
-            self.words(abi::RESULT, from, self.code.regs[value].is_pair, &mut list);
-            self.moves(&list);
+            let from = self.finalizer.assignment.register_of(value);
+            self.push_word_moves(abi::RESULT, from, self.code.regs[value].is_pair, &mut list);
+            self.emit_moves(&list);
         }
         let mut late = None;
         for (index, reg) in (0..).zip(self.saved.clone()) {

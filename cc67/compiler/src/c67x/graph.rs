@@ -33,7 +33,7 @@ pub(super) struct Graph {
 }
 
 /// Cycles from a step's issue until all its results have landed; at least 1.
-pub(super) fn landing(inst: &Inst) -> u32 {
+pub(super) fn landing_cycles(inst: &Inst) -> u32 {
     inst.writes().map(|write| u32::from(write.stage)).max().unwrap_or(1).max(1)
 }
 
@@ -63,7 +63,7 @@ pub(super) fn build(steps: &[Step], branches: &[Step]) -> Graph {
     let mut graph = builder.graph;
     for index in (0..count).rev() {
         let own = match steps.get(index) {
-            Some(step) => step.forms.first().map_or(1, landing),
+            Some(step) => step.forms.first().map_or(1, landing_cycles),
             None => BRANCH,
         };
         let below = graph.after[index]
@@ -98,7 +98,7 @@ struct RegisterWriter {
 }
 
 /// Reports whether at most one of two steps is executed: they have opposite conditions on the same value.
-fn excludes((one, version): (Pred, u32), (other, own): (Pred, u32)) -> bool {
+fn are_exclusive((one, version): (Pred, u32), (other, own): (Pred, u32)) -> bool {
     version == own && one.excludes(other)
 }
 
@@ -120,7 +120,7 @@ struct Builder {
 }
 
 impl Builder {
-    fn edge(&mut self, from: u32, to: u32, cycles: u8) {
+    fn add_edge(&mut self, from: u32, to: u32, cycles: u8) {
         self.edge_sheltered(from, to, cycles.cast_signed());
     }
 
@@ -148,10 +148,10 @@ impl Builder {
         for (reg, first, last) in reads.chain(condition.map(|reg| (reg, 1, 1))) {
             for index in 0..self.writers[reg.index()].len() {
                 let RegisterWriter { step: writer, stage, pred: other } = self.writers[reg.index()][index];
-                if excludes(other, pred) && Some(reg) != condition {
+                if are_exclusive(other, pred) && Some(reg) != condition {
                     continue;
                 }
-                self.edge(writer, step, (stage + 1).saturating_sub(first).max(1));
+                self.add_edge(writer, step, (stage + 1).saturating_sub(first).max(1));
             }
             self.readers[reg.index()].push(RegisterReader { step, last });
         }
@@ -163,10 +163,10 @@ impl Builder {
             }
             for index in 0..self.writers[at].len() {
                 let RegisterWriter { step: writer, stage, pred: other } = self.writers[at][index];
-                if stage == write.stage && excludes(other, pred) {
+                if stage == write.stage && are_exclusive(other, pred) {
                     continue;
                 }
-                self.edge(writer, step, (stage + 1).saturating_sub(write.stage));
+                self.add_edge(writer, step, (stage + 1).saturating_sub(write.stage));
             }
             if condition.is_none() {
                 self.writers[at].clear();
@@ -186,11 +186,11 @@ impl Builder {
         match what.access {
             Access::None => {}
             Access::Own { is_store, .. } => {
-                for word in words(what.access) {
+                for word in frame_words(what.access) {
                     self.own_word(step, what.access, word, is_store);
                 }
             }
-            Access::Shared { is_store, .. } => self.shared(step, what.access, version, is_store),
+            Access::Shared { is_store, .. } => self.order_shared_access(step, what.access, version, is_store),
         }
         self.accesses.push((step, what.access, version));
     }
@@ -201,7 +201,7 @@ impl Builder {
         for (from, other) in &before {
             let was_store = matches!(other, Access::Own { is_store: true, .. });
             if overlaps(*other, access) && (was_store || is_store) {
-                self.edge(*from, step, 1);
+                self.add_edge(*from, step, 1);
             }
         }
         // Accesses after a store of the whole word are ordered after all accesses before it.
@@ -214,25 +214,25 @@ impl Builder {
         self.own.insert(word, before);
     }
 
-    fn shared(&mut self, step: u32, access: Access, version: u32, is_store: bool) {
+    fn order_shared_access(&mut self, step: u32, access: Access, version: u32, is_store: bool) {
         let number = self.accesses.len() as u32;
         if let Some(store) = self.shared_store {
             let (from, other, at) = self.accesses[store as usize];
             // Two stores may share a cycle; a third could meet the first.
             let joins = is_store && !self.is_joined && are_apart((other, at), (access, version));
             self.is_joined = joins;
-            self.edge(from, step, u8::from(!joins));
+            self.add_edge(from, step, u8::from(!joins));
         }
         if is_store {
             for load in std::mem::take(&mut self.shared_loads) {
                 let (from, other, at) = self.accesses[load as usize];
-                self.edge(from, step, u8::from(!are_apart((other, at), (access, version))));
+                self.add_edge(from, step, u8::from(!are_apart((other, at), (access, version))));
             }
             self.shared_store = Some(number);
         } else {
             if let Some(load) = self.shared_loads.last() {
                 let from = self.accesses[*load as usize].0;
-                self.edge(from, step, 0);
+                self.add_edge(from, step, 0);
             }
             self.shared_loads.push(number);
         }
@@ -243,14 +243,14 @@ impl Builder {
         if inst.writes().any(|write| write.reg == abi::STACK) {
             for index in 0..self.accesses.len() {
                 let from = self.accesses[index].0;
-                self.edge(from, step, 0);
+                self.add_edge(from, step, 0);
             }
         }
     }
 }
 
 /// The words of the frame that an access touches.
-fn words(access: Access) -> std::ops::Range<i32> {
+fn frame_words(access: Access) -> std::ops::Range<i32> {
     match access {
         Access::Own { at, size, .. } => {
             at.div_euclid(WORD)..(at + size.cast_signed() - 1).div_euclid(WORD) + 1

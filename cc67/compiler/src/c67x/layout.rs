@@ -66,7 +66,7 @@ struct Layout {
 }
 
 impl Layout {
-    fn at(&self) -> u32 {
+    fn current_word(&self) -> u32 {
         self.function.words.len() as u32
     }
 
@@ -81,7 +81,7 @@ impl Layout {
             if packet.is_empty() {
                 let next = region.insts.get(index).map_or(region.cycles, |issued| issued.cycle);
                 let gap = (next - cycle).min(LONGEST);
-                self.begin(1, &mut label, blocks, region.span);
+                self.begin_packet(1, &mut label, blocks, region.span);
                 self.function.words.push(Inst::nop(gap).encode(false));
                 cycle += gap;
                 continue;
@@ -90,24 +90,24 @@ impl Layout {
             let mut packet: Vec<&IssuedInst> = packet.iter().collect();
             packet.sort_by_key(|issued| issued.inst.branch().is_none());
             let first = packet.first().map_or(region.span, |issued| issued.span);
-            self.begin(count as u32, &mut label, blocks, first);
+            self.begin_packet(count as u32, &mut label, blocks, first);
             self.packet(&packet);
             cycle += 1;
         }
         if let Some(label) = label {
             // An empty region: its label refers to the next one.
-            self.labels[label as usize] = self.at();
+            self.labels[label as usize] = self.current_word();
             self.pending.push(label);
         }
     }
 
     /// Makes room for a packet and gives it the waiting labels.
-    fn begin(&mut self, words: u32, label: &mut Option<u32>, blocks: u32, span: Span) {
-        let used = self.at() % FETCH;
+    fn begin_packet(&mut self, words: u32, label: &mut Option<u32>, blocks: u32, span: Span) {
+        let used = self.current_word() % FETCH;
         if used + words > FETCH {
             self.pad();
         }
-        let at = self.at();
+        let at = self.current_word();
         let mut pending = std::mem::take(&mut self.pending);
         pending.extend(label.take());
         pending.sort_unstable();
@@ -132,7 +132,7 @@ impl Layout {
 
     /// Fills the fetch packet with `NOP`s that belong to the last packet.
     fn pad(&mut self) {
-        while !self.at().is_multiple_of(FETCH) {
+        while !self.current_word().is_multiple_of(FETCH) {
             if let Some(word) = self.function.words.last_mut() {
                 *word |= c67x::PARALLEL;
             }
@@ -144,11 +144,11 @@ impl Layout {
         let last = packet.len() - 1;
         for (index, issued) in packet.iter().enumerate() {
             if let Some(value) = issued.value.filter(|value| !matches!(value, Value::Number(_))) {
-                self.open.push((self.at(), value));
+                self.open.push((self.current_word(), value));
             }
             // An access that traps is reported with its own line.
             if index > 0 && issued.inst.mem().is_some() {
-                self.mark(self.at(), issued.span);
+                self.mark(self.current_word(), issued.span);
             }
             self.function.words.push(issued.inst.encode(index < last));
         }
@@ -156,11 +156,11 @@ impl Layout {
 
     /// Puts the tables of addresses after the code.
     fn tables(&mut self, tables: &[Vec<u32>]) {
-        self.function.code = self.at();
+        self.function.code = self.current_word();
         for table in tables {
-            self.tables.push(self.at());
+            self.tables.push(self.current_word());
             for label in table {
-                let at = self.at();
+                let at = self.current_word();
                 let offset = self.labels[*label as usize] * 4;
                 self.function.fixups.push(Fixup {
                     word: at,
@@ -182,7 +182,7 @@ impl Layout {
                 Value::Number(_) | Value::Symbol(..) => None,
             };
             if let (Op::BDisp, Some(target)) = (inst.op(), own) {
-                self.displace(word, inst, target);
+                self.set_displacement(word, inst, target);
                 continue;
             }
             let (symbol, offset) = match value {
@@ -201,7 +201,7 @@ impl Layout {
         self.function.fixups.sort_by_key(|fixup| fixup.word);
     }
 
-    fn displace(&mut self, word: u32, inst: Inst, target: u32) {
+    fn set_displacement(&mut self, word: u32, inst: Inst, target: u32) {
         let bytes = (target * 4).wrapping_sub(word / FETCH * FETCH_PACKET).cast_signed();
         let side = inst.unit().map_or(Side::B, |unit| unit.side);
         let parallel = self.function.words[word as usize] & c67x::PARALLEL != 0;

@@ -40,7 +40,7 @@ pub(super) fn analyze(code: &Code) -> Liveness {
     scan.intervals.resize(code.regs.len());
     scan.block.resize(code.regs.len());
     scan.number.resize(code.regs.len());
-    let (bounds, calls) = scan.mentions(code);
+    let (bounds, calls) = scan.scan_code(code);
     scan.flow(code, &bounds);
     let loops = (0..).zip(&code.blocks).zip(&bounds);
     let loops = loops.filter(|((number, block), _)| block.terminator.targets().any(|to| to == *number));
@@ -68,7 +68,7 @@ struct UseDefSets {
 }
 
 impl Scan {
-    fn mention(&mut self, reg: VReg, position: u32, block: u32, weight: f32, is_read: bool) {
+    fn record_use(&mut self, reg: VReg, position: u32, block: u32, weight: f32, is_read: bool) {
         let interval = &mut self.intervals[reg];
         interval.weight += weight;
         if interval.is_used {
@@ -86,34 +86,34 @@ impl Scan {
     }
 
     /// Walks the code; the positions of each block's beginning and end, and of the calls.
-    fn mentions(&mut self, code: &Code) -> (PositionPairs, PositionPairs) {
+    fn scan_code(&mut self, code: &Code) -> (PositionPairs, PositionPairs) {
         let mut bounds = Vec::with_capacity(code.blocks.len());
         let mut calls = Vec::new();
         for (reg, _) in &code.params {
-            self.mention(*reg, 1, 0, 1.0, false);
+            self.record_use(*reg, 1, 0, 1.0, false);
         }
         let mut at = 2;
         for (number, block) in (0..).zip(&code.blocks) {
             let start = at;
             let weight = 8_f32.powi(block.depth.min(5).cast_signed());
             for inst in &block.insts {
-                inst.visit_reads(|reg| self.mention(reg, at, number, weight, true));
+                inst.visit_reads(|reg| self.record_use(reg, at, number, weight, true));
                 if inst.kind == Kind::Call {
                     calls.push((at, inst.number));
                     for (reg, _) in &code.calls[inst.number as usize].arguments {
-                        self.mention(*reg, at, number, weight, true);
+                        self.record_use(*reg, at, number, weight, true);
                     }
                 }
-                if let Some((reg, _)) = inst.written() {
-                    self.mention(reg, at + 1, number, weight, false);
+                if let Some((reg, _)) = inst.written_register() {
+                    self.record_use(reg, at + 1, number, weight, false);
                 }
-                if let Some(reg) = inst.stepped() {
-                    self.mention(reg, at + 1, number, weight, false);
+                if let Some(reg) = inst.incremented_base() {
+                    self.record_use(reg, at + 1, number, weight, false);
                 }
                 at += 2;
             }
             if let Some(reg) = block.terminator.read() {
-                self.mention(reg, at, number, weight, true);
+                self.record_use(reg, at, number, weight, true);
             }
             at += 2;
             bounds.push((start, at - 1));
@@ -134,7 +134,7 @@ impl Scan {
         while is_changed {
             is_changed = false;
             for (number, block) in code.blocks.iter().enumerate().rev() {
-                leave(&mut leaving, &entering, block, words);
+                compute_live_out(&mut leaving, &entering, block, words);
                 let own = &mut entering[number * words..(number + 1) * words];
                 for (index, own) in own.iter_mut().enumerate() {
                     let new = sets[number].read[index] | leaving[index] & !sets[number].written[index];
@@ -144,13 +144,13 @@ impl Scan {
             }
         }
         for (number, (block, (start, end))) in code.blocks.iter().zip(bounds).enumerate() {
-            self.spread(&entering[number * words..(number + 1) * words], *start - 1);
-            leave(&mut leaving, &entering, block, words);
-            self.spread(&leaving, *end);
+            self.extend_intervals(&entering[number * words..(number + 1) * words], *start - 1);
+            compute_live_out(&mut leaving, &entering, block, words);
+            self.extend_intervals(&leaving, *end);
         }
     }
 
-    fn spread(&mut self, set: &[u64], position: u32) {
+    fn extend_intervals(&mut self, set: &[u64], position: u32) {
         for (word, bits) in set.iter().enumerate() {
             let mut bits = *bits;
             while bits != 0 {
@@ -179,7 +179,7 @@ impl Scan {
                     read(&mut sets, *reg);
                 }
             }
-            if let Some((reg, true)) = inst.written()
+            if let Some((reg, true)) = inst.written_register()
                 && let Some((word, bit)) = self.bit(reg)
             {
                 sets.written[word] |= bit;
@@ -198,7 +198,7 @@ impl Scan {
 }
 
 /// Computes the registers that are live at the end of a block.
-fn leave(leaving: &mut [u64], entering: &[u64], block: &super::code::Block, words: usize) {
+fn compute_live_out(leaving: &mut [u64], entering: &[u64], block: &super::code::Block, words: usize) {
     leaving.fill(0);
     for target in block.terminator.targets() {
         let start = target as usize * words;

@@ -39,7 +39,7 @@ pub(super) struct OverlapKey {
 
 impl Memo {
     /// Returns the entry of a region that equals this one.
-    pub(super) fn of(&mut self, region: Region) -> &mut KnownRegion {
+    pub(super) fn entry(&mut self, region: Region) -> &mut KnownRegion {
         let label = region.label as usize;
         if self.labels.len() <= label {
             self.labels.resize_with(label + 1, Vec::new);
@@ -55,7 +55,7 @@ impl Memo {
 
 impl KnownRegion {
     /// The packets of the region if it begins at the word `at`.
-    pub(super) fn plain(&mut self, order: Order, at: u32) -> ScheduledRegion {
+    pub(super) fn scheduled(&mut self, order: Order, at: u32) -> ScheduledRegion {
         let at = at % FETCH;
         if let Some((_, plain)) = self.plain.iter().find(|(own, _)| *own == at) {
             return plain.clone();
@@ -71,7 +71,7 @@ impl KnownRegion {
     }
 
     /// Keeps an overlap for later attempts.
-    pub(super) fn keep(&mut self, question: OverlapKey, plan: SearchedOverlap) {
+    pub(super) fn store_overlap(&mut self, question: OverlapKey, plan: SearchedOverlap) {
         self.plans.push((question, plan));
     }
 }

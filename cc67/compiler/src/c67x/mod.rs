@@ -98,7 +98,7 @@ impl Generator {
             predicate::run(&mut code);
             copies::run(&mut code);
         }
-        let attempt = attempts::best(ir, code, self.level).map_err(|why| match why {
+        let attempt = attempts::best_attempt(ir, code, self.level).map_err(|why| match why {
             TooLarge::Frame => frame_too_large(ir.span, name),
             TooLarge::Code => too_large(ir.span, name),
         })?;

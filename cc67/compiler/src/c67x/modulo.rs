@@ -75,13 +75,13 @@ pub(super) fn search(
     let least = (steps.len() as u32).div_ceil(8).max(BRANCH);
     let given = WORK.min(whole.0);
     let mut work = WorkBudget(given);
-    let found = shortest(steps, &is_certain, least..limit, &waits, &mut work);
+    let found = shortest_overlap(steps, &is_certain, least..limit, &waits, &mut work);
     whole.0 -= given - work.0;
     found
 }
 
 /// The overlap with the shortest of some periods.
-fn shortest(
+fn shortest_overlap(
     steps: &[Step],
     is_certain: &[bool],
     periods: Range<u32>,
@@ -156,10 +156,10 @@ impl Dependences {
                 all.push(Dependence { from, to: to % count, cycles, distance, sheltered });
             }
         }
-        Self::sorted(all, count)
+        Self::from_sorted(all, count)
     }
 
-    fn sorted(all: Vec<Dependence>, count: usize) -> Self {
+    fn from_sorted(all: Vec<Dependence>, count: usize) -> Self {
         let starts = (0..=count).map(|step| all.partition_point(|wait| wait.from < step)).collect();
         let mut before = vec![Vec::new(); count];
         for wait in all.iter().filter(|wait| wait.to != wait.from) {
@@ -171,7 +171,7 @@ impl Dependences {
     /// Returns the dependences for a loop in which interrupts are possible everywhere.
     fn exposed(&self) -> Self {
         let all = self.all.iter().map(|wait| Dependence { sheltered: wait.cycles, ..*wait }).collect();
-        Self::sorted(all, self.before.len())
+        Self::from_sorted(all, self.before.len())
     }
 
     /// The dependences on a step.
@@ -198,7 +198,7 @@ impl Dependences {
     /// The cycles from each step to the end of its iteration, and the rounds over all waits that were needed; `None` if
     /// an iteration waits too long for the previous one.
     fn heights(&self, steps: &[Step], period: u32) -> Option<(Vec<i64>, usize)> {
-        let landing = |step: &Step| step.forms.first().map_or(1, graph::landing);
+        let landing = |step: &Step| step.forms.first().map_or(1, graph::landing_cycles);
         let mut heights: Vec<i64> = steps.iter().map(|step| landing(step).into()).collect();
         for round in 0..=steps.len() {
             let mut is_changed = false;
@@ -234,8 +234,8 @@ struct Slots {
 }
 
 impl Slots {
-    fn take(&mut self, step: usize, cycle: u32, inst: Inst) {
-        self.resources.take(&inst, cycle);
+    fn occupy(&mut self, step: usize, cycle: u32, inst: Inst) {
+        self.resources.reserve(&inst, cycle);
         self.places[step] = Some((cycle, inst));
     }
 
@@ -257,7 +257,7 @@ impl Finder<'_> {
             Slots { places: vec![None; self.steps.len()], resources: Resources::periodic(self.period) };
         let at = (self.commit + 1) * self.period - BRANCH;
         let Some(inst) = self.steps[branch].forms.first() else { return Ok(None) };
-        placed.take(branch, at, *inst);
+        placed.occupy(branch, at, *inst);
         let mut tried: Vec<Option<u32>> = vec![None; self.steps.len()];
         let mut budget = TRIES * self.steps.len();
         while let Some(step) = order.iter().copied().find(|step| placed.places[*step].is_none()) {
@@ -285,7 +285,7 @@ impl Finder<'_> {
     }
 
     /// Returns the first cycle of a step; `cycles` gives the length of each dependence.
-    fn earliest(&self, step: usize, placed: &Slots, cycles: impl Fn(&Dependence) -> i64) -> u32 {
+    fn earliest_cycle(&self, step: usize, placed: &Slots, cycles: impl Fn(&Dependence) -> i64) -> u32 {
         let first = if self.is_certain[step] { self.commit * self.period } else { 0 };
         let after = self.waits.before[step].iter().filter_map(|wait| {
             let (at, _) = placed.places[wait.from]?;
@@ -322,8 +322,8 @@ impl Finder<'_> {
         tried: &mut [Option<u32>],
         work: &mut WorkBudget,
     ) -> Result<Option<()>, BudgetExceeded> {
-        let earliest = self.earliest(step, placed, |wait| wait.sheltered);
-        let exposed = self.earliest(step, placed, |wait| wait.cycles);
+        let earliest = self.earliest_cycle(step, placed, |wait| wait.sheltered);
+        let exposed = self.earliest_cycle(step, placed, |wait| wait.cycles);
         let found = self.free(step, earliest..exposed + self.period, placed, work)?;
         let free =
             found.filter(|(cycle, _)| tried[step].is_none_or(|last| *cycle > last || *cycle == earliest));
@@ -343,7 +343,7 @@ impl Finder<'_> {
             return Ok(None);
         }
         tried[step] = Some(cycle);
-        placed.take(step, cycle, inst);
+        placed.occupy(step, cycle, inst);
         Ok(self.remove_broken(step, cycle, placed))
     }
 
@@ -358,7 +358,9 @@ impl Finder<'_> {
         let forms = &self.steps[step].forms;
         for cycle in cycles {
             work.spend(forms.len())?;
-            let Some(inst) = forms.iter().find(|inst| placed.resources.fits(inst, cycle)) else { continue };
+            let Some(inst) = forms.iter().find(|inst| placed.resources.can_issue(inst, cycle)) else {
+                continue;
+            };
             work.spend(self.waits.before[step].len())?;
             if self.is_after(step, cycle, placed) {
                 return Ok(Some((cycle, *inst)));
@@ -373,22 +375,22 @@ impl Finder<'_> {
         let mut alone = Resources::periodic(self.period);
         for step in 0..branch {
             let Some((at, own)) = placed.places[step] else { continue };
-            alone.take(&own, at);
-            if !alone.fits(inst, cycle) {
+            alone.reserve(&own, at);
+            if !alone.can_issue(inst, cycle) {
                 placed.remove(step);
             }
             alone.release(&own, at);
         }
         // A resource is still taken by several steps together: evict the last ones in the same cycle.
         for step in (0..branch).rev() {
-            if placed.resources.fits(inst, cycle) {
+            if placed.resources.can_issue(inst, cycle) {
                 return Some(());
             }
             if placed.places[step].is_some_and(|(at, _)| at % self.period == cycle % self.period) {
                 placed.remove(step);
             }
         }
-        placed.resources.fits(inst, cycle).then_some(())
+        placed.resources.can_issue(inst, cycle).then_some(())
     }
 
     /// Evicts the steps whose dependences a new position violates.

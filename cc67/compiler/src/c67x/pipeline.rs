@@ -37,15 +37,18 @@ pub(super) fn schedule(
     memo: &mut Memo,
     work: &mut WorkBudget,
 ) -> Vec<ScheduledRegion> {
-    let entering =
-        if regions.iter().any(|region| back(region).is_some()) { live(&regions) } else { Vec::new() };
+    let entering = if regions.iter().any(|region| back_branch(region).is_some()) {
+        compute_live_in(&regions)
+    } else {
+        Vec::new()
+    };
     let mut done = Vec::with_capacity(regions.len());
     let mut ends = Vec::new();
     let (mut labels, mut at) = (labels, 0);
     for region in regions {
-        let known = memo.of(region);
-        let mut plain = known.plain(Order::Early, at);
-        let found = back(&known.region).is_some().then(|| {
+        let known = memo.entry(region);
+        let mut plain = known.scheduled(Order::Early, at);
+        let found = back_branch(&known.region).is_some().then(|| {
             let found = Loop::new(known, &entering, plain.cycles, work);
             plain.is_exceeded = found.is_err();
             let mut pipelined = found.ok().flatten()?;
@@ -56,13 +59,13 @@ pub(super) fn schedule(
         let found = found.flatten();
         match found {
             Some((parts, after, next)) => {
-                at = parts.iter().fold(at, |at, part| refine::end(part, at));
+                at = parts.iter().fold(at, |at, part| refine::end_address(part, at));
                 done.extend(parts);
                 ends.extend(after);
                 labels = next;
             }
             None => {
-                at = refine::end(&plain, at);
+                at = refine::end_address(&plain, at);
                 done.push(plain);
             }
         }
@@ -72,7 +75,7 @@ pub(super) fn schedule(
 }
 
 /// The branch of a region that leads back to it under a condition.
-fn back(region: &Region) -> Option<&Step> {
+fn back_branch(region: &Region) -> Option<&Step> {
     if region.steps.is_empty() || region.steps.len() > LARGEST || !region.late.is_empty() {
         return None;
     }
@@ -84,13 +87,13 @@ fn back(region: &Region) -> Option<&Step> {
 }
 
 /// The registers that are live at the beginning of each region, with its label.
-fn live(regions: &[Region]) -> Vec<(u32, u64)> {
+fn compute_live_in(regions: &[Region]) -> Vec<(u32, u64)> {
     let mut entering: Vec<(u32, u64)> = regions.iter().map(|region| (region.label, 0)).collect();
     let mut is_changed = true;
     while is_changed {
         is_changed = false;
         for index in (0..regions.len()).rev() {
-            let mut live = leaving(&regions[index], entering.get(index + 1), &entering);
+            let mut live = live_out(&regions[index], entering.get(index + 1), &entering);
             for step in regions[index].branches.iter().chain(regions[index].steps.iter().rev()) {
                 let Some(inst) = step.forms.first() else { continue };
                 if inst.pred() == Pred::Always {
@@ -107,7 +110,7 @@ fn live(regions: &[Region]) -> Vec<(u32, u64)> {
 }
 
 /// The registers that are live after a region.
-fn leaving(region: &Region, next: Option<&(u32, u64)>, entering: &[(u32, u64)]) -> u64 {
+fn live_out(region: &Region, next: Option<&(u32, u64)>, entering: &[(u32, u64)]) -> u64 {
     let mut live = next.map_or(0, |(_, live)| *live) & !region.exit_registers.changes;
     for step in &region.branches {
         if let Some(Value::Block(label)) = step.value {
@@ -150,7 +153,7 @@ impl<'a> Loop<'a> {
         work: &mut WorkBudget,
     ) -> Result<Option<Self>, BudgetExceeded> {
         let region = &known.region;
-        let Some(back) = back(region) else { return Ok(None) };
+        let Some(back) = back_branch(region) else { return Ok(None) };
         let outside = match region.branches.iter().find(|step| step.value != back.value) {
             Some(step) => match step.value {
                 Some(Value::Block(label)) => label,
@@ -171,7 +174,7 @@ impl<'a> Loop<'a> {
             Some(plan) => plan.clone(),
             None => {
                 let plan = modulo::search(&steps, is_certain, cycles, work);
-                known.keep(question, plan.clone());
+                known.store_overlap(question, plan.clone());
                 plan
             }
         };
@@ -188,7 +191,7 @@ impl<'a> Loop<'a> {
         let mut rest: Vec<Instance> = Vec::new();
         let mut passes = 0..stages.min(commit + i64::from(depth > 1));
         while !passes.is_empty() {
-            let mut own = self.beginnings(passes.clone());
+            let mut own = self.prologue_instances(passes.clone());
             let first_unknown = passes.end - commit;
             let branch = depth > 1;
             let mut now = std::mem::take(&mut rest);
@@ -201,20 +204,20 @@ impl<'a> Loop<'a> {
             self.sort(&mut now);
             let mut branches = Vec::new();
             if branch {
-                let end = self.fresh();
+                let end = self.new_label();
                 branches.push(self.leave_to(end)?);
                 ends.push(self.end_of(first_unknown, end)?);
             }
-            parts.push(self.plain(label, &now, branches));
-            label = self.fresh();
+            parts.push(self.schedule_region(label, &now, branches));
+            label = self.new_label();
             passes = if passes.end < stages - 1 && branch { passes.end..passes.end + 1 } else { 0..0 };
         }
         if !rest.is_empty() {
-            parts.push(self.plain(label, &rest, Vec::new()));
-            label = self.fresh();
+            parts.push(self.schedule_region(label, &rest, Vec::new()));
+            label = self.new_label();
         }
         parts.push(self.packets(label));
-        parts.push(self.last()?);
+        parts.push(self.final_region()?);
         let cycles = |parts: &[ScheduledRegion]| parts.iter().map(|part| part.cycles).sum::<u32>();
         let plain = schedule::schedule(self.region, Order::Early, 0).cycles;
         let overlapped =
@@ -226,7 +229,7 @@ impl<'a> Loop<'a> {
         self.plan.period.into()
     }
 
-    fn fresh(&mut self) -> u32 {
+    fn new_label(&mut self) -> u32 {
         self.label += 1;
         self.label - 1
     }
@@ -254,7 +257,7 @@ impl<'a> Loop<'a> {
     }
 
     /// The step instances of the prologue passes, in which not every stage is active, without the branches.
-    fn beginnings(&self, passes: std::ops::Range<i64>) -> Vec<Instance> {
+    fn prologue_instances(&self, passes: std::ops::Range<i64>) -> Vec<Instance> {
         let mut found = Vec::new();
         for step in 0..self.branch() {
             let stage = i64::from(self.plan.stage(step));
@@ -267,7 +270,7 @@ impl<'a> Loop<'a> {
     }
 
     /// The instances that complete the last `count` iterations after the last pass; the last iteration is number 0.
-    fn endings(&self, count: i64) -> Vec<Instance> {
+    fn epilogue_instances(&self, count: i64) -> Vec<Instance> {
         let mut found = Vec::new();
         for step in 0..self.branch() {
             let stage = i64::from(self.plan.stage(step));
@@ -282,7 +285,7 @@ impl<'a> Loop<'a> {
         instances.iter().map(|one| self.steps[one.step].clone()).collect()
     }
 
-    fn plain(&self, label: u32, instances: &[Instance], branches: Vec<Step>) -> ScheduledRegion {
+    fn schedule_region(&self, label: u32, instances: &[Instance], branches: Vec<Step>) -> ScheduledRegion {
         let region = Region {
             steps: self.steps(instances),
             branches,
@@ -307,7 +310,7 @@ impl<'a> Loop<'a> {
     fn end_of(&self, count: i64, label: u32) -> Option<ScheduledRegion> {
         let step = &self.steps[self.branch()];
         let out = branch_to(step.forms.first()?, Pred::Always, self.outside, step)?;
-        let mut end = self.plain(label, &self.endings(count), vec![out]);
+        let mut end = self.schedule_region(label, &self.epilogue_instances(count), vec![out]);
         end.weight *= RARE;
         Some(end)
     }
@@ -332,7 +335,7 @@ impl<'a> Loop<'a> {
     }
 
     /// The end of the loop after its own packets, with the results that are still in flight.
-    fn last(&mut self) -> Option<ScheduledRegion> {
+    fn final_region(&mut self) -> Option<ScheduledRegion> {
         let depth = i64::from(self.plan.stages() - self.plan.commit);
         let end = (i64::from(self.plan.commit) + 1) * self.period();
         let start = end - 2 * self.period();
@@ -355,9 +358,9 @@ impl<'a> Loop<'a> {
             let step = &self.steps[self.branch()];
             branches.push(branch_to(step.forms.first()?, Pred::Always, self.outside, step)?);
         }
-        let label = self.fresh();
+        let label = self.new_label();
         let region = Region {
-            steps: self.steps(&self.endings(depth)),
+            steps: self.steps(&self.epilogue_instances(depth)),
             branches,
             ..Region::new(label, self.region.weight / 8.0, self.region.span)
         };

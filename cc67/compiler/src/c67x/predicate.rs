@@ -20,7 +20,7 @@ const ROUNDS: usize = 6;
 /// Rewrites the blocks.
 pub(super) fn run(code: &mut Code) {
     for _ in 0..ROUNDS {
-        let mut worker = Worker { before: predecessors(code), home: homes(code), code };
+        let mut worker = Worker { before: predecessors(code), home: find_user_blocks(code), code };
         let mut is_changed = false;
         for block in 0..worker.code.blocks.len() {
             while worker.join(block) {
@@ -77,7 +77,7 @@ impl UserBlocks {
 }
 
 /// The blocks that use each register; a parameter is used outside all.
-pub(super) fn homes(code: &Code) -> SecondaryMap<VReg, UserBlocks> {
+pub(super) fn find_user_blocks(code: &Code) -> SecondaryMap<VReg, UserBlocks> {
     let mut homes = SecondaryMap::with_capacity(code.regs.len());
     homes.resize(code.regs.len());
     for (reg, _) in &code.params {
@@ -87,7 +87,7 @@ pub(super) fn homes(code: &Code) -> SecondaryMap<VReg, UserBlocks> {
         let mut mention = |reg: VReg| homes[reg].add(number);
         for inst in &block.insts {
             inst.visit_reads(&mut mention);
-            if let Some((reg, _)) = inst.written() {
+            if let Some((reg, _)) = inst.written_register() {
                 mention(reg);
             }
             if inst.kind == Kind::Call {
@@ -131,7 +131,7 @@ impl Worker<'_> {
             self.move_home(inst, next, number as u32);
         }
         if let Some(reg) = end.read() {
-            self.rehome(reg, next, number as u32);
+            self.move_use(reg, next, number as u32);
         }
         let block = &mut self.code.blocks[number];
         block.insts.extend(insts);
@@ -141,7 +141,7 @@ impl Worker<'_> {
         true
     }
 
-    fn rehome(&mut self, reg: VReg, from: u32, to: u32) {
+    fn move_use(&mut self, reg: VReg, from: u32, to: u32) {
         if self.home[reg] == UserBlocks::Block(from) {
             self.home[reg] = UserBlocks::Block(to);
         }
@@ -150,12 +150,12 @@ impl Worker<'_> {
     fn move_home(&mut self, inst: &Inst, from: u32, to: u32) {
         let mut regs = Vec::new();
         inst.visit_reads(|reg| regs.push(reg));
-        regs.extend(inst.written().map(|(reg, _)| reg));
+        regs.extend(inst.written_register().map(|(reg, _)| reg));
         if inst.kind == Kind::Call {
             regs.extend(self.code.calls[inst.number as usize].arguments.iter().map(|(reg, _)| *reg));
         }
         for reg in regs {
-            self.rehome(reg, from, to);
+            self.move_use(reg, from, to);
         }
     }
 
@@ -186,7 +186,7 @@ impl Worker<'_> {
             return false;
         };
         for (block, negated) in sides.iter().copied() {
-            self.take(number, block, Some((condition, negated)));
+            self.predicate_block(number, block, Some((condition, negated)));
         }
         self.before[end as usize] -= 1;
         self.code.blocks[number].terminator = Terminator::Jump(end);
@@ -203,27 +203,28 @@ impl Worker<'_> {
             && own.insts.iter().all(|inst| {
                 inst.condition.is_none()
                     && !matches!(inst.kind, Kind::Call | Kind::FrameAddress)
-                    && inst.written().is_none_or(|(reg, _)| reg != condition)
-                    && inst.stepped().is_none()
+                    && inst.written_register().is_none_or(|(reg, _)| reg != condition)
+                    && inst.incremented_base().is_none()
             })
     }
 
-    fn take(&mut self, number: usize, block: u32, condition: Condition) {
+    fn predicate_block(&mut self, number: usize, block: u32, condition: Condition) {
         let insts = std::mem::take(&mut self.code.blocks[block as usize].insts);
         self.code.blocks[block as usize].terminator = Terminator::Unreachable;
         self.before[block as usize] = 0;
         for inst in insts {
-            self.under(number, block, inst, condition);
+            self.predicate_inst(number, block, inst, condition);
         }
         if let Some((reg, _)) = condition {
             self.home[reg] = UserBlocks::Several;
         }
     }
 
-    fn under(&mut self, number: usize, block: u32, mut inst: Inst, condition: Condition) {
-        let is_own = inst.written().is_some_and(|(reg, _)| self.home[reg] == UserBlocks::Block(block));
+    fn predicate_inst(&mut self, number: usize, block: u32, mut inst: Inst, condition: Condition) {
+        let is_own =
+            inst.written_register().is_some_and(|(reg, _)| self.home[reg] == UserBlocks::Block(block));
         let is_memory = inst.kind.bytes().is_some();
-        let reg = inst.written().map(|(reg, _)| reg);
+        let reg = inst.written_register().map(|(reg, _)| reg);
         self.move_home(&inst, block, number as u32);
         let out = &mut self.code.blocks[number].insts;
         if is_own && !is_memory {

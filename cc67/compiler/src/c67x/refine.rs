@@ -28,7 +28,7 @@ pub(super) struct Item<'a> {
 }
 
 /// The address of the word after a region that begins at the word `at`.
-pub(super) fn end(region: &ScheduledRegion, mut at: u32) -> u32 {
+pub(super) fn end_address(region: &ScheduledRegion, mut at: u32) -> u32 {
     let mut cycle = 0;
     let mut insts = region.insts.iter().peekable();
     while cycle < region.cycles {
@@ -68,7 +68,7 @@ pub(super) fn run(items: &mut [Item<'_>], graph: &Graph, cycles: u32, at: u32) {
     let mut resources = Resources::default();
     let mut cells = vec![Vec::new(); cycles as usize];
     for (index, item) in items.iter().enumerate() {
-        resources.take(&item.issued.inst, item.issued.cycle);
+        resources.reserve(&item.issued.inst, item.issued.cycle);
         cells[item.issued.cycle as usize].push(index);
     }
     // If two branches do not share a cycle, steps after the first one may not be executed.
@@ -104,11 +104,11 @@ impl Refiner<'_, '_> {
     }
 
     /// The last cycle in which an item may issue.
-    fn latest(&self, index: usize) -> u32 {
+    fn latest_cycle(&self, index: usize) -> u32 {
         let item = &self.items[index];
         let own = item.issued.cycle;
         let Some(node) = item.node.filter(|_| item.issued.inst.branch().is_none()) else { return own };
-        let mut latest = self.landed.saturating_sub(graph::landing(&item.issued.inst));
+        let mut latest = self.landed.saturating_sub(graph::landing_cycles(&item.issued.inst));
         for edge in &self.graph.after[node] {
             let to = self.items[self.nodes[edge.to as usize]].issued.cycle;
             latest = latest.min(to.saturating_sub(edge.cycles.into()));
@@ -120,11 +120,11 @@ impl Refiner<'_, '_> {
     }
 
     /// The form in which an item can issue in a cycle.
-    fn form(&mut self, index: usize, cycle: u32) -> Option<Inst> {
+    fn find_form(&mut self, index: usize, cycle: u32) -> Option<Inst> {
         let Item { step, issued, .. } = &self.items[index];
         self.resources.release(&issued.inst, issued.cycle);
-        let form = step.forms.iter().copied().find(|inst| self.resources.fits(inst, cycle));
-        self.resources.take(&issued.inst, issued.cycle);
+        let form = step.forms.iter().copied().find(|inst| self.resources.can_issue(inst, cycle));
+        self.resources.reserve(&issued.inst, issued.cycle);
         form
     }
 
@@ -134,7 +134,7 @@ impl Refiner<'_, '_> {
         let from = std::mem::replace(&mut issued.cycle, cycle);
         let old = std::mem::replace(&mut issued.inst, inst);
         self.resources.release(&old, from);
-        self.resources.take(&inst, cycle);
+        self.resources.reserve(&inst, cycle);
         self.cells[from as usize].retain(|other| *other != index);
         let to = &mut self.cells[cycle as usize];
         to.insert(to.partition_point(|other| *other < index), index);
@@ -170,8 +170,8 @@ impl Refiner<'_, '_> {
                 continue;
             }
             for index in self.cells[from as usize].clone() {
-                if self.latest(index) >= cycle
-                    && let Some(inst) = self.form(index, cycle)
+                if self.latest_cycle(index) >= cycle
+                    && let Some(inst) = self.find_form(index, cycle)
                 {
                     self.set(index, cycle, inst);
                     return true;
@@ -215,13 +215,13 @@ impl Refiner<'_, '_> {
 
     fn move_one(&mut self, cycle: u32) -> bool {
         let mut found: Vec<(u32, usize)> = (self.cells[cycle as usize].iter())
-            .map(|index| (self.latest(*index), *index))
+            .map(|index| (self.latest_cycle(*index), *index))
             .filter(|(latest, _)| *latest > cycle)
             .collect();
         found.sort_by_key(|(latest, index)| (std::cmp::Reverse(*latest), *index));
         for (latest, index) in found {
             for to in cycle + 1..=latest.min(cycle + FAR) {
-                if let Some(inst) = self.form(index, to) {
+                if let Some(inst) = self.find_form(index, to) {
                     self.set(index, to, inst);
                     return true;
                 }

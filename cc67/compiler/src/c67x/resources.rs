@@ -46,12 +46,12 @@ impl Resources {
     }
 
     /// The cycle modulo the period.
-    const fn counted(&self, cycle: u32) -> u32 {
+    const fn cycle_in_period(&self, cycle: u32) -> u32 {
         if self.period == 0 { cycle } else { cycle % self.period }
     }
 
-    fn at(&mut self, cycle: u32) -> &mut Cycle {
-        let index = self.counted(cycle) as usize;
+    fn cycle_mut(&mut self, cycle: u32) -> &mut Cycle {
+        let index = self.cycle_in_period(cycle) as usize;
         if index >= self.cycles.len() {
             self.cycles.resize(index + 12, Cycle::default());
         }
@@ -59,23 +59,23 @@ impl Resources {
     }
 
     /// Reports whether an instruction can issue in a cycle.
-    pub(super) fn fits(&mut self, inst: &Inst, cycle: u32) -> bool {
+    pub(super) fn can_issue(&mut self, inst: &Inst, cycle: u32) -> bool {
         let Some(unit) = inst.unit() else { return true };
         let bit = 1 << unit.index();
-        let own = *self.at(cycle);
+        let own = *self.cycle_mut(cycle);
         if own.count >= 8 || inst.data_path().is_some_and(|side| own.paths & path(side) != 0) {
             return false;
         }
         let cross = inst.cross_path().map_or(0, path);
         for held in 0..u32::from(inst.unit_cycles()) {
-            let later = self.at(cycle + held);
+            let later = self.cycle_mut(cycle + held);
             if later.units & bit != 0 || later.crosses & cross != 0 {
                 return false;
             }
         }
         if unit.kind != UnitKind::D {
             for write in inst.writes() {
-                if self.at(cycle + u32::from(write.stage)).ports & bit != 0 {
+                if self.cycle_mut(cycle + u32::from(write.stage)).ports & bit != 0 {
                     return false;
                 }
             }
@@ -109,7 +109,8 @@ impl Resources {
     }
 
     fn reads_fit(&self, inst: &Inst, cycle: u32) -> bool {
-        let Some(others) = self.reads.get(self.counted(cycle) as usize).filter(|others| !others.is_empty())
+        let Some(others) =
+            self.reads.get(self.cycle_in_period(cycle) as usize).filter(|others| !others.is_empty())
         else {
             return inst.reads().all(|read| inst.reads().filter(|own| own.reg == read.reg).count() <= READS);
         };
@@ -120,26 +121,26 @@ impl Resources {
     }
 
     /// Takes the resources of an instruction.
-    pub(super) fn take(&mut self, inst: &Inst, cycle: u32) {
+    pub(super) fn reserve(&mut self, inst: &Inst, cycle: u32) {
         let Some(unit) = inst.unit() else { return };
         let bit = 1 << unit.index();
-        self.at(cycle).count += 1;
-        self.at(cycle).paths |= inst.data_path().map_or(0, path);
+        self.cycle_mut(cycle).count += 1;
+        self.cycle_mut(cycle).paths |= inst.data_path().map_or(0, path);
         let cross = inst.cross_path().map_or(0, path);
         for held in 0..u32::from(inst.unit_cycles()) {
-            let later = self.at(cycle + held);
+            let later = self.cycle_mut(cycle + held);
             later.units |= bit;
             later.crosses |= cross;
         }
         if unit.kind != UnitKind::D {
             for write in inst.writes() {
-                self.at(cycle + u32::from(write.stage)).ports |= bit;
+                self.cycle_mut(cycle + u32::from(write.stage)).ports |= bit;
             }
         }
         if is_product(inst.mnemonic()) {
             self.products.entry(cycle).or_default().push((unit.index() as u8, inst.mnemonic()));
         }
-        let index = self.counted(cycle) as usize;
+        let index = self.cycle_in_period(cycle) as usize;
         if index >= self.reads.len() {
             self.reads.resize(index + 12, Vec::new());
         }
@@ -150,17 +151,17 @@ impl Resources {
     pub(super) fn release(&mut self, inst: &Inst, cycle: u32) {
         let Some(unit) = inst.unit() else { return };
         let bit = 1 << unit.index();
-        self.at(cycle).count -= 1;
-        self.at(cycle).paths &= !inst.data_path().map_or(0, path);
+        self.cycle_mut(cycle).count -= 1;
+        self.cycle_mut(cycle).paths &= !inst.data_path().map_or(0, path);
         let cross = inst.cross_path().map_or(0, path);
         for held in 0..u32::from(inst.unit_cycles()) {
-            let later = self.at(cycle + held);
+            let later = self.cycle_mut(cycle + held);
             later.units &= !bit;
             later.crosses &= !cross;
         }
         if unit.kind != UnitKind::D {
             for write in inst.writes() {
-                self.at(cycle + u32::from(write.stage)).ports &= !bit;
+                self.cycle_mut(cycle + u32::from(write.stage)).ports &= !bit;
             }
         }
         if is_product(inst.mnemonic()) {
@@ -170,7 +171,7 @@ impl Resources {
                 here.swap_remove(index);
             }
         }
-        let index = self.counted(cycle) as usize;
+        let index = self.cycle_in_period(cycle) as usize;
         for read in inst.reads() {
             let reads = &mut self.reads[index];
             if let Some(index) = reads.iter().position(|reg| *reg == read.reg) {

@@ -37,7 +37,7 @@ pub(super) fn schedule(region: &Region, order: Order, at: u32) -> ScheduledRegio
     let mut list = List::new(&graph, order);
     let end = list.steps(steps);
     let cycles = match branches.first() {
-        Some(branch) if !late.is_empty() => list.leave(steps.len(), branch, late, end),
+        Some(branch) if !late.is_empty() => list.place_return_branch(steps.len(), branch, late, end),
         _ => list.branches(steps, branches, end),
     };
     let mut items = list.issued;
@@ -66,10 +66,10 @@ pub(super) fn schedule_after(tail: &Tail, region: Region) -> ScheduledRegion {
     list.first = (tail.issued.len() as u32, tail.cycles);
     let mut ready = Vec::new();
     for (index, (_, inst, cycle)) in (0..).zip(&tail.issued) {
-        list.resources.take(inst, *cycle);
+        list.resources.reserve(inst, *cycle);
         list.release(index, *cycle, steps.len(), &mut ready);
     }
-    let landing = tail.issued.iter().map(|(_, inst, cycle)| cycle + graph::landing(inst)).max();
+    let landing = tail.issued.iter().map(|(_, inst, cycle)| cycle + graph::landing_cycles(inst)).max();
     let end = list.steps(&steps).max(landing.unwrap_or(0)).max(tail.cycles);
     let cycles = list.branches(&steps, &branches, end) - tail.cycles;
     let mut insts: Vec<IssuedInst> = list.issued.into_iter().map(|item| item.issued).collect();
@@ -125,7 +125,11 @@ impl<'a> List<'a> {
                 let step = ready[index];
                 let own = &steps[step as usize];
                 let may = self.earliest[step as usize] <= cycle && !(taken && self.order == Order::Source);
-                let form = if may { self.considerate(own, &ready[index + 1..], steps, cycle) } else { None };
+                let form = if may {
+                    self.find_least_contended_form(own, &ready[index + 1..], steps, cycle)
+                } else {
+                    None
+                };
                 let Some(inst) = form else {
                     if self.order == Order::Source {
                         break;
@@ -136,7 +140,7 @@ impl<'a> List<'a> {
                 ready.remove(index);
                 left -= 1;
                 taken = true;
-                end = end.max(cycle + graph::landing(&inst));
+                end = end.max(cycle + graph::landing_cycles(&inst));
                 self.issue(own, Some(step as usize), inst, cycle);
                 self.release(step, cycle, steps.len(), &mut ready);
             }
@@ -161,14 +165,20 @@ impl<'a> List<'a> {
     }
 
     /// The form that can issue in a cycle.
-    fn form(&mut self, step: &Step, cycle: u32) -> Option<Inst> {
-        step.forms.iter().copied().find(|inst| self.resources.fits(inst, cycle))
+    fn find_form(&mut self, step: &Step, cycle: u32) -> Option<Inst> {
+        step.forms.iter().copied().find(|inst| self.resources.can_issue(inst, cycle))
     }
 
     /// The form that can issue in a cycle; if there is a choice, not on a unit that is the only one for a step in
     /// `others`.
-    fn considerate(&mut self, step: &Step, others: &[u32], steps: &[Step], cycle: u32) -> Option<Inst> {
-        let first = self.form(step, cycle)?;
+    fn find_least_contended_form(
+        &mut self,
+        step: &Step,
+        others: &[u32],
+        steps: &[Step],
+        cycle: u32,
+    ) -> Option<Inst> {
+        let first = self.find_form(step, cycle)?;
         if step.forms.len() == 1 || self.order == Order::Source {
             return Some(first);
         }
@@ -182,12 +192,13 @@ impl<'a> List<'a> {
         if bit(&first) & wanted == 0 {
             return Some(first);
         }
-        let free = step.forms.iter().find(|inst| bit(inst) & wanted == 0 && self.resources.fits(inst, cycle));
+        let free =
+            step.forms.iter().find(|inst| bit(inst) & wanted == 0 && self.resources.can_issue(inst, cycle));
         Some(free.copied().unwrap_or(first))
     }
 
     fn issue(&mut self, step: &'a Step, node: Option<usize>, inst: Inst, cycle: u32) {
-        self.resources.take(&inst, cycle);
+        self.resources.reserve(&inst, cycle);
         if step.access != Access::None {
             self.last_access = self.last_access.max(cycle);
         }
@@ -217,7 +228,7 @@ impl<'a> List<'a> {
             let inst = loop {
                 let sides = branch.forms.iter().copied();
                 if let Some(inst) =
-                    sides.chain(other_side(branch)).find(|inst| self.resources.fits(inst, cycle))
+                    sides.chain(other_side(branch)).find(|inst| self.resources.can_issue(inst, cycle))
                 {
                     break inst;
                 }
@@ -233,19 +244,25 @@ impl<'a> List<'a> {
     /// Places the branch that leaves the function. Its delay slots contain the load of the register that it reads and
     /// then the increment of the stack pointer, because no interrupt comes between them. Returns the length of the
     /// region.
-    fn leave(&mut self, branch_index: usize, branch: &'a Step, late: &'a [Step], end: u32) -> u32 {
+    fn place_return_branch(
+        &mut self,
+        branch_index: usize,
+        branch: &'a Step,
+        late: &'a [Step],
+        end: u32,
+    ) -> u32 {
         let mut cycle = self.earliest[branch_index].max(end.saturating_sub(BRANCH));
         let last_access = self.last_access;
         loop {
-            let own = self.form(branch, cycle);
+            let own = self.find_form(branch, cycle);
             let mut from = cycle;
             let mut placed: Vec<(&'a Step, Inst, u32)> = Vec::with_capacity(late.len());
             for step in late {
                 let is_access = step.access != Access::None;
                 let first = if is_access { from } else { from.max(cycle + 1).max(last_access) };
-                let landing = step.forms.first().map_or(1, graph::landing);
+                let landing = step.forms.first().map_or(1, graph::landing_cycles);
                 let found =
-                    (first..=cycle + BRANCH - landing).find_map(|at| Some((self.form(step, at)?, at)));
+                    (first..=cycle + BRANCH - landing).find_map(|at| Some((self.find_form(step, at)?, at)));
                 let Some((inst, at)) = found else { break };
                 from = at;
                 placed.push((step, inst, at));

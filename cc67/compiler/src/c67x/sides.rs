@@ -103,7 +103,7 @@ fn spread_bases(code: &mut Code) {
         for (base, count) in bases {
             let info = &mut code.regs[base];
             if info.side.is_none() && info.hint.is_none() {
-                let side = lighter(&accesses);
+                let side = less_loaded_side(&accesses);
                 info.side = Some(side);
                 accesses[side.bit() as usize] += count;
             }
@@ -119,7 +119,7 @@ fn place(regs: &mut Regs, inst: &Inst, load: &mut SideLoad<'_>) {
     let side = match (inst.dst.reg(), inst.place) {
         (_, Some(place)) if inst.kind.bytes().is_some() => {
             if let Some(dst) = inst.dst.reg() {
-                let wanted = load.loaded(regs, dst);
+                let wanted = load.side_for_load(regs, dst);
                 let side = *regs[dst].side.get_or_insert(wanted);
                 load.loads[side.bit() as usize] += 1;
             }
@@ -131,7 +131,7 @@ fn place(regs: &mut Regs, inst: &Inst, load: &mut SideLoad<'_>) {
         (Some(dst), _) => match regs[dst].side {
             Some(side) => side,
             None => {
-                let side = best(regs, inst, dst, load);
+                let side = best_side(regs, inst, dst, load);
                 regs[dst].side = Some(side);
                 side
             }
@@ -167,7 +167,7 @@ struct SideLoad<'a> {
 
 impl SideLoad<'_> {
     /// The best side for loading a register.
-    fn loaded(&self, regs: &Regs, dst: VReg) -> Side {
+    fn side_for_load(&self, regs: &Regs, dst: VReg) -> Side {
         let info = &regs[dst];
         if let Some(hint) = info.hint {
             return hint.side();
@@ -210,7 +210,7 @@ fn readers(code: &Code) -> SecondaryMap<VReg, PackedOption<VReg>> {
     readers
 }
 
-fn lighter(load: &[i32; 2]) -> Side {
+fn less_loaded_side(load: &[i32; 2]) -> Side {
     if load[1] < load[0] { Side::B } else { Side::A }
 }
 
@@ -227,7 +227,7 @@ fn indexes(code: &Code) -> SecondaryMap<VReg, PackedOption<VReg>> {
     indexes
 }
 
-fn best(regs: &Regs, inst: &Inst, dst: VReg, load: &SideLoad<'_>) -> Side {
+fn best_side(regs: &Regs, inst: &Inst, dst: VReg, load: &SideLoad<'_>) -> Side {
     let cost = |side: Side| {
         let own = load.insts[side.bit() as usize];
         let other = load.insts[side.other().bit() as usize];
@@ -289,7 +289,9 @@ impl Copier<'_> {
                 }
             }
         }
-        for written in [inst.written().map(|(reg, _)| reg), inst.stepped()].into_iter().flatten() {
+        for written in
+            [inst.written_register().map(|(reg, _)| reg), inst.incremented_base()].into_iter().flatten()
+        {
             self.copies.retain(|(of, copy)| of.reg() != Some(written) && *copy != written);
         }
         self.out.push(inst);

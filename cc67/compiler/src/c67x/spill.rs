@@ -23,7 +23,7 @@ pub(super) fn to_memory(code: &mut Code, moved: &[VReg]) {
         let mut mover = Spiller { code, reg: *reg, source: home };
         mentions.first.splice(0..0, mover.params());
         for mention in std::mem::take(&mut mentions.of[index]) {
-            mover.mention(&mut mentions.all[mention as usize]);
+            mover.rewrite_mention(&mut mentions.all[mention as usize]);
         }
     }
     mentions.write(code);
@@ -60,8 +60,8 @@ impl Mentions {
             for (at, inst) in own.insts.iter().enumerate() {
                 found.clear();
                 inst.visit_reads(|reg| found.extend(number[reg]));
-                found.extend(inst.written().and_then(|(reg, _)| number[reg]));
-                found.extend(inst.stepped().and_then(|reg| number[reg]));
+                found.extend(inst.written_register().and_then(|(reg, _)| number[reg]));
+                found.extend(inst.incremented_base().and_then(|reg| number[reg]));
                 if inst.kind == Kind::Call {
                     let arguments = &code.calls[inst.number as usize].arguments;
                     found.extend(arguments.iter().filter_map(|(reg, _)| number[*reg]));
@@ -132,7 +132,7 @@ struct Spiller<'a> {
 
 impl Spiller<'_> {
     /// A register for one instruction that replaces the spilled one.
-    fn short(&mut self, is_pair: bool) -> VReg {
+    fn temporary_register(&mut self, is_pair: bool) -> VReg {
         let old = self.code.regs[self.reg];
         let is_condition = old.is_condition && !is_pair;
         self.code.reg(VRegInfo {
@@ -155,7 +155,7 @@ impl Spiller<'_> {
         let Some(index) = self.code.params.iter().position(|(reg, _)| *reg == self.reg) else {
             return stores;
         };
-        let short = self.short(self.is_pair());
+        let short = self.temporary_register(self.is_pair());
         self.code.params[index].0 = short;
         self.code.regs[short].hint = Some(self.code.params[index].1);
         let span = self.code.blocks.first().map(|block| block.span);
@@ -166,7 +166,7 @@ impl Spiller<'_> {
     }
 
     /// Rewrites an instruction that uses the register, or the end of a block.
-    fn mention(&mut self, mention: &mut Mention) {
+    fn rewrite_mention(&mut self, mention: &mut Mention) {
         let mut out = Vec::with_capacity(mention.insts.len() + 2);
         for inst in std::mem::take(&mut mention.insts) {
             self.inst(inst, &mut out);
@@ -183,7 +183,7 @@ impl Spiller<'_> {
 
     fn inst(&mut self, mut inst: Inst, out: &mut Vec<Inst>) {
         let reg = self.reg;
-        let written = inst.written().filter(|(written, _)| *written == reg);
+        let written = inst.written_register().filter(|(written, _)| *written == reg);
         if written.is_some() && (inst.kind == Kind::Begin || matches!(self.source, ReloadSource::Constant(_)))
         {
             return;
@@ -203,12 +203,13 @@ impl Spiller<'_> {
         let keeps = inst.keeps_destination() && written.is_some();
         let mut whole = false;
         inst.visit_reads(|read| whole |= read == reg);
-        let steps = inst.stepped() == Some(reg);
+        let steps = inst.incremented_base() == Some(reg);
         if !is_read && written.is_none() {
             out.push(inst);
             return;
         }
-        let short = if whole || keeps { self.load(inst.span, out) } else { self.short(self.is_pair()) };
+        let short =
+            if whole || keeps { self.load(inst.span, out) } else { self.temporary_register(self.is_pair()) };
         let dst = inst.dst;
         if written.is_some() && !keeps && matches!(dst, Arg::Low(_) | Arg::High(_)) {
             out.push(Inst::new(Kind::Begin, short.into(), Arg::None, Arg::None, inst.span));
@@ -253,7 +254,7 @@ impl Spiller<'_> {
 
     fn load(&mut self, span: crate::source::Span, out: &mut Vec<Inst>) -> VReg {
         let is_pair = self.is_pair();
-        let short = self.short(is_pair);
+        let short = self.temporary_register(is_pair);
         match self.source {
             ReloadSource::Constant(value) => out.extend(make(short.into(), value, span)),
             ReloadSource::Memory(first) if is_pair => {
@@ -271,7 +272,7 @@ impl Spiller<'_> {
     }
 
     fn load_word(&mut self, offset: i32, span: crate::source::Span, out: &mut Vec<Inst>) -> VReg {
-        let short = self.short(false);
+        let short = self.temporary_register(false);
         if let ReloadSource::Memory(first) = self.source {
             let mut inst = Inst::new(Kind::LoadWord, short.into(), Arg::None, Arg::None, span);
             inst.place = Some(MemoryPlace::new(Base::Spill(first), offset));

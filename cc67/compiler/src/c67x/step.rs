@@ -156,10 +156,10 @@ impl Finalizer<'_> {
         match arg {
             Arg::None => PhysicalOperand::None,
             Arg::Value(value) => PhysicalOperand::Value(value),
-            Arg::Low(reg) => PhysicalOperand::Reg(self.assignment.of(reg)),
-            Arg::High(reg) => PhysicalOperand::Reg(self.assignment.of(reg).pair().high()),
+            Arg::Low(reg) => PhysicalOperand::Reg(self.assignment.register_of(reg)),
+            Arg::High(reg) => PhysicalOperand::Reg(self.assignment.register_of(reg).pair().high()),
             Arg::Reg(reg) => {
-                let at = self.assignment.of(reg);
+                let at = self.assignment.register_of(reg);
                 if self.code.regs[reg].is_pair {
                     PhysicalOperand::Pair(at.pair())
                 } else {
@@ -187,9 +187,9 @@ impl Finalizer<'_> {
             let elements = (offset % size == 0).then_some(offset / size)?;
             return Some(Mem::at(abi::STACK, u16::try_from(elements).ok()?));
         };
-        let base = self.assignment.of(base);
+        let base = self.assignment.register_of(base);
         if let Some(index) = place.index {
-            return Some(Mem::indexed(base, self.assignment.of(index)));
+            return Some(Mem::indexed(base, self.assignment.register_of(index)));
         }
         if place.step != 0 {
             let steps = u16::try_from(place.step.unsigned_abs()).ok()?;

@@ -35,7 +35,7 @@ pub(crate) struct MachineText {
 }
 
 /// The word of an `MVK` or `MVKH` with another constant of 16 bits.
-pub(crate) const fn half(word: u32, constant: u32) -> u32 {
+pub(crate) const fn with_half_constant(word: u32, constant: u32) -> u32 {
     word & !(0xFFFF << 7) | (constant & 0xFFFF) << 7
 }
 
@@ -51,7 +51,7 @@ pub(crate) const fn branch(word: u32, at: u32, target: u32) -> u32 {
 }
 
 /// The words of assembler text, an instruction a line.
-pub(crate) fn assembled(text: &str) -> Vec<u32> {
+pub(crate) fn assemble_words(text: &str) -> Vec<u32> {
     let lines = text.lines().filter(|line| !line.trim().is_empty());
     let lines: Vec<_> = lines.filter_map(|line| assemble(line, 0).ok()).collect();
     let joins = |next: usize| lines.get(next).is_some_and(|line| line.joins_previous);

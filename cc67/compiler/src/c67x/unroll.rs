@@ -24,10 +24,10 @@ const TESTED: usize = 2;
 pub(super) fn run(code: &mut Code, skipped: u32) -> u32 {
     let mut count = 0;
     // Unrolled code uses the same registers as before, and new ones of its own.
-    let homes = predicate::homes(code);
+    let homes = predicate::find_user_blocks(code);
     for number in 0..code.blocks.len() {
-        let Some(back) = back(&code.blocks[number], number as u32) else { continue };
-        let Some(facts) = facts(code, &homes, number, back) else { continue };
+        let Some(back) = back_condition(&code.blocks[number], number as u32) else { continue };
+        let Some(facts) = loop_facts(code, &homes, number, back) else { continue };
         let copies = MOST.min(ALL / code.blocks[number].insts.len().max(1)).min(MOST - facts.tested);
         if copies < 2 {
             continue;
@@ -54,7 +54,7 @@ pub(super) fn run(code: &mut Code, skipped: u32) -> u32 {
 }
 
 /// The condition under which a block jumps to itself.
-fn back(block: &Block, number: u32) -> Option<(VReg, bool)> {
+fn back_condition(block: &Block, number: u32) -> Option<(VReg, bool)> {
     match block.terminator {
         Terminator::Branch { condition, negated, then, otherwise } if then != otherwise => {
             if then == number {
@@ -83,7 +83,7 @@ struct LoopFacts {
 }
 
 /// Returns the facts for rewriting a loop; `None` if it cannot be rewritten.
-fn facts(
+fn loop_facts(
     code: &Code,
     homes: &SecondaryMap<VReg, UserBlocks>,
     number: usize,
@@ -92,7 +92,7 @@ fn facts(
     let block = &code.blocks[number];
     let is_simple = |inst: &Inst| {
         !matches!(inst.kind, Kind::Call | Kind::FrameAddress)
-            && inst.stepped().is_none()
+            && inst.incremented_base().is_none()
             && (inst.kind.bytes().is_none() || inst.condition.is_none())
             && !matches!(inst.place, Some(place) if matches!(place.base, Base::Spill(_)))
     };
@@ -115,7 +115,7 @@ fn facts(
         {
             tested.push(reg);
         }
-        if let Some((reg, is_whole)) = inst.written() {
+        if let Some((reg, is_whole)) = inst.written_register() {
             // Half of a pair of which nothing is known yet counts as carried.
             if !is_whole && !written.contains(&reg) && !carried.contains(&reg) {
                 carried.push(reg);

@@ -101,7 +101,7 @@ impl CallResults {
     }
 
     /// Notes the result of a call, as the slot of a register.
-    pub fn note(&mut self, call: &CallRequest, slot: u64) {
+    pub fn record(&mut self, call: &CallRequest, slot: u64) {
         self.known.insert(call.id, slot);
     }
 }
@@ -227,7 +227,7 @@ impl Model {
         let (is_address, items) = (*is_address, probe_names.items);
         let mut context = CompileContext::default();
         let request = CompileRequest { path: &self.path, options: &self.options, files: &Disk };
-        let FrontEndOutput { main, mut unit } = request.front(text, &mut context);
+        let FrontEndOutput { main, mut unit } = request.run_front_end(text, &mut context);
         let CompileContext { sources, names, sink } = context;
         let error = sink.diagnostics().iter().find(|diagnostic| diagnostic.severity == Severity::Error);
         if let Some(error) = error {
@@ -439,7 +439,8 @@ impl Probe {
     /// Returns whether the expression has a value at present that is not 0.
     pub fn is_true<R: DebugReader>(&self, reader: &R) -> bool {
         if self.is_address {
-            let number = self.value(reader).ok().and_then(|value| self.shown(reader).number(&value));
+            let number =
+                self.value(reader).ok().and_then(|value| self.display_context(reader).number(&value));
             return number.is_some_and(|number| number != 0.0);
         }
         let inner = ProbeReader { reader, locals: &self.locals, results: None, unmapped: Cell::new(None) };
@@ -452,7 +453,7 @@ impl Probe {
         let function = self.expression.function();
         let ty = function.exprs[self.value].ty;
         if !self.is_address {
-            let constant = self.expression.constant(inner).ok_or_else(|| self.why(reader))?;
+            let constant = self.expression.constant(inner).ok_or_else(|| self.failure_reason(reader))?;
             return Ok(DebugValue { ty, data: Data::Constant(constant) });
         }
         let pointee = match self.unit.types.get(ty) {
@@ -462,7 +463,7 @@ impl Probe {
         if let ExprKind::Address(place) = function.exprs[self.value].kind
             && let PlaceKind::Local(local, 0) = function.places[place].kind
         {
-            let local = self.locals.get(&local).ok_or_else(|| self.why(reader))?;
+            let local = self.locals.get(&local).ok_or_else(|| self.failure_reason(reader))?;
             return Ok(DebugValue::of(
                 pointee,
                 reader.local(local).ok_or_else(|| optimised_out(&local.name))?,
@@ -472,7 +473,7 @@ impl Probe {
             Some(Constant::Int(address)) => {
                 Ok(DebugValue { ty: pointee, data: Data::Memory(GuestAddr::new(address as u32)) })
             }
-            _ => Err(self.why(reader)),
+            _ => Err(self.failure_reason(reader)),
         }
     }
 
@@ -506,14 +507,14 @@ impl Probe {
 
     /// Types and names, to show the value.
     #[must_use]
-    pub fn shown<'a>(&'a self, reader: &'a dyn DebugReader) -> DisplayContext<'a> {
+    pub fn display_context<'a>(&'a self, reader: &'a dyn DebugReader) -> DisplayContext<'a> {
         DisplayContext { types: &self.unit.types, names: &self.names, reader }
     }
 
     /// A number as memory would hold it in this place; `None` for a structure or an array.
     #[must_use]
     pub fn bytes_of(&self, place: &DebugValue, number: f64, reader: &dyn DebugReader) -> Option<Vec<u8>> {
-        let shown = self.shown(reader);
+        let shown = self.display_context(reader);
         shown.constant(place)?;
         if let Data::Field(..) = place.data {
             return None;
@@ -521,7 +522,7 @@ impl Probe {
         Some(encode(place.ty, number))
     }
 
-    fn why(&self, reader: &dyn DebugReader) -> String {
+    fn failure_reason(&self, reader: &dyn DebugReader) -> String {
         let missing =
             self.locals.values().find(|local| self.names_local(local) && reader.local(local).is_none());
         if let Some(local) = missing {

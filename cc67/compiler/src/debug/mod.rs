@@ -2,7 +2,7 @@
 //!
 //! A compilation is a function of its source and options, so information that is not in the image is obtained by
 //! compiling the source again: types, scopes, and for every local its register or frame offset at each instruction.
-//! [`Model::of`] compares the resulting image with the given one, byte for byte; if they differ, the information would
+//! [`Model::build`] compares the resulting image with the given one, byte for byte; if they differ, the information would
 //! belong to another program, and there is none.
 
 mod eval;
@@ -119,7 +119,7 @@ pub struct LocalModel {
 impl LocalModel {
     /// Its location when the instruction at an address is next; `None` if it is optimised out there.
     #[must_use]
-    pub fn at(&self, address: u32) -> Option<Location> {
+    pub fn location_at(&self, address: u32) -> Option<Location> {
         self.places.iter().find(|(range, _)| range.contains(&address)).map(|(_, location)| *location)
     }
 }
@@ -154,7 +154,7 @@ impl Model {
     ///
     /// # Errors
     /// The source does not compile, or results in another image.
-    pub fn of(
+    pub fn build(
         path: &Path,
         text: Vec<u8>,
         options: &Options,
@@ -177,7 +177,7 @@ impl Model {
     /// types, and global variables. The locations of locals are not known.
     ///
     /// # Errors
-    /// As [`of`](Self::of).
+    /// As [`build`](Self::build).
     pub fn of_real_code(
         path: &Path,
         text: Vec<u8>,
@@ -508,7 +508,7 @@ pub fn of_image(path: &Path, program: &[u8], options: &Options) -> Result<Model,
     for options in std::iter::once(options.clone()).chain(others) {
         // The name of the file is part of the image: as it was given, or as it is found.
         for name in [PathBuf::from(source.file_name().unwrap_or_default()), source.clone()] {
-            match Model::of(&name, text.clone(), &options, &crate::pp::Disk, thread, program) {
+            match Model::build(&name, text.clone(), &options, &crate::pp::Disk, thread, program) {
                 Ok(model) => return Ok(Model { path: source, ..model }),
                 Err(error) => _ = first.get_or_insert(error),
             }

@@ -49,7 +49,7 @@ pub enum NumberFormat {
 impl NumberFormat {
     /// The format of a letter.
     #[must_use]
-    pub const fn of(letter: char) -> Option<Self> {
+    pub const fn from_letter(letter: char) -> Option<Self> {
         Some(match letter {
             'x' => Self::Hexadecimal,
             'z' => Self::Padded,
@@ -84,7 +84,7 @@ impl NumberFormat {
                 format!("{bits:#x}{}", name.map_or_else(String::new, |name| format!(" <{name}>")))
             }
             Self::Character => character(i64::from(bits as i8), bits as u8),
-            Self::Float if width == 64 => general(f64::from_bits(bits), DOUBLE_DIGITS),
+            Self::Float if width == 64 => format_general(f64::from_bits(bits), DOUBLE_DIGITS),
             Self::Float if width == 32 => float(f32::from_bits(bits as u32)),
             Self::Float => signed.to_string(),
         }
@@ -181,7 +181,7 @@ impl DisplayContext<'_> {
 
     fn text_at(&self, value: &DebugValue, format: Option<NumberFormat>, depth: u32) -> String {
         if let Some(address) = value.address().filter(|address| !self.reader.is_mapped(*address)) {
-            return super::value::unreadable(address);
+            return super::value::unreadable_text(address);
         }
         match self.types.get(value.ty) {
             Type::Void => "void".to_owned(),
@@ -259,7 +259,7 @@ impl DisplayContext<'_> {
         }
         let address = GuestAddr::new(address);
         if !self.reader.is_mapped(address) {
-            return format!("{text} {}", super::value::unreadable(address));
+            return format!("{text} {}", super::value::unreadable_text(address));
         }
         let byte = |offset: u32| self.reader.bytes(address.offset(offset))[0];
         let length = (0..ELEMENTS).take_while(|offset| byte(*offset) != 0).count() as u32;
@@ -299,18 +299,18 @@ impl DisplayContext<'_> {
             (Constant::Int(number), Type::UnsignedLongLong) => number.cast_unsigned().to_string(),
             (Constant::Int(number), _) => number.to_string(),
             (Constant::Float(number), Type::Float) => float(number as f32),
-            (Constant::Float(number), _) => general(number, DOUBLE_DIGITS),
+            (Constant::Float(number), _) => format_general(number, DOUBLE_DIGITS),
         }
     }
 }
 
 /// A character with its number.
 fn character(number: i64, byte: u8) -> String {
-    format!("{number} '{}'", escaped(byte, b'\''))
+    format!("{number} '{}'", escape(byte, b'\''))
 }
 
 /// A character in quotation marks of a kind.
-fn escaped(byte: u8, quote: u8) -> String {
+fn escape(byte: u8, quote: u8) -> String {
     match byte {
         7 => "\\a".to_owned(),
         8 => "\\b".to_owned(),
@@ -337,9 +337,9 @@ fn string(bytes: &[u8]) -> String {
             if !run.is_empty() {
                 parts.push(format!("\"{}\"", std::mem::take(&mut run)));
             }
-            parts.push(format!("'{}' <repeats {count} times>", escaped(first, b'\'')));
+            parts.push(format!("'{}' <repeats {count} times>", escape(first, b'\'')));
         } else {
-            run += &escaped(first, b'"');
+            run += &escape(first, b'"');
         }
     }
     if !run.is_empty() || parts.is_empty() {
@@ -353,11 +353,11 @@ fn float(number: f32) -> String {
         let sign = if number.is_sign_negative() { "-" } else { "" };
         return format!("{sign}nan({:#x})", number.to_bits() & 0x7f_ffff);
     }
-    general(number.into(), FLOAT_DIGITS)
+    format_general(number.into(), FLOAT_DIGITS)
 }
 
 /// A number as C's `%g` prints it with a number of digits.
-fn general(number: f64, digits: usize) -> String {
+fn format_general(number: f64, digits: usize) -> String {
     if number.is_nan() {
         let sign = if number.is_sign_negative() { "-" } else { "" };
         return format!("{sign}nan({:#x})", number.to_bits() & 0xf_ffff_ffff_ffff);
@@ -397,7 +397,7 @@ mod tests {
             (0.00001, "1.0000000000000001e-05"),
             (f64::NEG_INFINITY, "-inf"),
         ] {
-            assert_eq!(general(number, DOUBLE_DIGITS), expect);
+            assert_eq!(format_general(number, DOUBLE_DIGITS), expect);
         }
         assert_eq!(float(0.1), "0.100000001");
     }
@@ -419,7 +419,7 @@ mod tests {
     #[test]
     fn formats_are_those_of_gdb() {
         let text = |format, bits: i64, size| {
-            NumberFormat::of(format).map(|format| format.text(bits.cast_unsigned(), size, &|_| None))
+            NumberFormat::from_letter(format).map(|format| format.text(bits.cast_unsigned(), size, &|_| None))
         };
         for (format, bits, size, expect) in [
             ('x', -3, 2, "0xfffd"),

@@ -62,7 +62,7 @@ pub struct Child {
 }
 
 /// The text for a value that cannot be read.
-pub(super) fn unreadable(address: GuestAddr) -> String {
+pub(super) fn unreadable_text(address: GuestAddr) -> String {
     format!("<error: Cannot access memory at address {:#x}>", address.get())
 }
 

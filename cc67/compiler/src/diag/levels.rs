@@ -41,7 +41,7 @@ impl Lint {
     ///
     /// # Errors
     /// No lint has that name.
-    pub fn named(text: &str) -> Result<Self, UnknownLint> {
+    pub fn from_name(text: &str) -> Result<Self, UnknownLint> {
         let name = text.to_ascii_lowercase();
         let plain = name.strip_prefix("-w").unwrap_or(&name);
         let plain = plain.strip_prefix("no-").or(plain.strip_prefix("error=")).unwrap_or(plain);
@@ -66,29 +66,29 @@ impl Levels {
             ("all", _) => self.all = Some(on),
             ("extra", _) => self.extra = Some(on),
             (_, Some(name)) => {
-                let named = self.named(name)?;
+                let named = self.setting_mut(name)?;
                 named.as_error = Some(on);
                 if on {
                     named.shown = Some(true);
                 }
             }
-            (_, None) => self.named(name)?.shown = Some(on),
+            (_, None) => self.setting_mut(name)?.shown = Some(on),
         }
         Ok(())
     }
 
     /// Shows a lint as `-WNAME` does.
-    pub fn show(&mut self, lint: Lint) {
+    pub fn enable(&mut self, lint: Lint) {
         self.entry(lint).shown = Some(true);
     }
 
     /// Obeys `-w`: no warning at all.
-    pub fn silence(&mut self) {
+    pub fn disable_all(&mut self) {
         self.is_silent = true;
     }
 
-    fn named(&mut self, name: &str) -> Result<&mut LintSetting, UnknownLint> {
-        Lint::named(name).map(|lint| self.entry(lint))
+    fn setting_mut(&mut self, name: &str) -> Result<&mut LintSetting, UnknownLint> {
+        Lint::from_name(name).map(|lint| self.entry(lint))
     }
 
     fn entry(&mut self, lint: Lint) -> &mut LintSetting {
@@ -107,7 +107,7 @@ impl Levels {
         }
         let named = diagnostic.lint.and_then(|lint| self.named.iter().find(|named| named.lint == lint));
         let is_shown = diagnostic.lint.is_none_or(|lint| {
-            named.and_then(|named| named.shown).unwrap_or_else(|| self.shows(lint.preset()))
+            named.and_then(|named| named.shown).unwrap_or_else(|| self.is_enabled(lint.preset()))
         });
         let mut diagnostic = is_shown.then(|| diagnostic.clone())?;
         let as_error = named.and_then(|named| named.as_error).unwrap_or(self.as_errors);
@@ -117,7 +117,7 @@ impl Levels {
         Some(diagnostic)
     }
 
-    fn shows(&self, preset: Preset) -> bool {
+    fn is_enabled(&self, preset: Preset) -> bool {
         match preset {
             Preset::On => self.all.unwrap_or(true),
             Preset::All => self.all.unwrap_or(false),
@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn silence_hides_warnings_and_no_errors() {
         let mut levels = Levels::default();
-        levels.silence();
+        levels.disable_all();
         assert_eq!(levels.apply(&Diagnostic::warning(Lint::Format, Span::new(0, 1), "x")), None);
         assert_eq!(levels.apply(&Diagnostic::requested_warning(Span::new(0, 1), "x")), None);
         assert!(levels.apply(&Diagnostic::global_error("x")).is_some());
@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn unknown_names_get_a_suggestion() {
-        let say = |name: &str| Lint::named(name).map_err(|error| error.to_string());
+        let say = |name: &str| Lint::from_name(name).map_err(|error| error.to_string());
         assert_eq!(say("-Wno-Stack-Size"), Ok(Lint::StackSize));
         assert_eq!(
             say("stack-siez"),

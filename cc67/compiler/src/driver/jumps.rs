@@ -5,7 +5,7 @@
 
 use kmotiondef::jumps::JumpFunction;
 
-use crate::c67x::text::assembled;
+use crate::c67x::text::assemble_words;
 use crate::ir::function::Signature;
 use crate::ir::inst::Class;
 use crate::object::{Definition, Line, Object, ObjectFunction, SourceLine, Symbol, SymbolKind};
@@ -68,7 +68,7 @@ pub(super) fn object() -> Object {
 
 /// Adds one of them.
 fn add(object: &mut Object, function: JumpFunction) {
-    let words = assembled(match function {
+    let words = assemble_words(match function {
         JumpFunction::Set => SET,
         JumpFunction::Long => LONG,
     });

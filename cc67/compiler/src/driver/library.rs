@@ -52,7 +52,7 @@ impl<'t> Member<'t> {
     }
 
     /// The names that request it.
-    fn asked(&self) -> impl Iterator<Item = &'t str> + use<'t> {
+    fn requesting_names(&self) -> impl Iterator<Item = &'t str> + use<'t> {
         self.names.split_whitespace().take_while(|name| *name != "+")
     }
 }
@@ -118,7 +118,7 @@ fn needed_by(
         .filter(|symbol| symbol.linkage == Linkage::External && symbol.definition != Definition::None)
         .map(|symbol| symbol.name.as_str())
         .collect();
-    let is_used = |member: &Member<'_>| member.asked().any(|name| used.contains(name));
+    let is_used = |member: &Member<'_>| member.requesting_names().any(|name| used.contains(name));
     members().filter(|member| is_used(member) && !member.names().any(|name| defined.contains(name))).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Compiles source texts to a linked program: the stages in order.
 //!
-//! [`CompileRequest::front`] makes the typed tree of a text, [`generate`] an object of the tree; commands call [`compile`]
-//! and [`link_units`]. Watched expressions take the same [`CompileRequest::front`].
+//! [`CompileRequest::run_front_end`] makes the typed tree of a text, [`generate`] an object of the tree; commands call
+//! [`compile`] and [`link_units`]. Watched expressions take the same [`CompileRequest::run_front_end`].
 
 mod includers;
 mod jumps;
@@ -131,7 +131,7 @@ impl Compilation {
     }
 
     /// A compilation that ends before the text is read.
-    fn refused(path: &Path, error: Diagnostic) -> Self {
+    fn failed(path: &Path, error: Diagnostic) -> Self {
         let mut sink = Sink::new();
         sink.report(error);
         let name = path.to_string_lossy().into_owned();
@@ -146,7 +146,7 @@ const STACK: usize = 512 << 20;
 #[must_use]
 pub fn compile(path: &Path, text: Vec<u8>, options: &Options, files: &(dyn pp::Files + Sync)) -> Compilation {
     on_large_stack(|| compile_here(path, text, options, files))
-        .unwrap_or_else(|error| Compilation::refused(path, *error))
+        .unwrap_or_else(|error| Compilation::failed(path, *error))
 }
 
 /// Runs on a stack that is large enough for any source text.
@@ -194,7 +194,7 @@ pub(crate) fn front_and_object(
 ) -> (Unit, Compilation, Names) {
     let mut context = CompileContext::default();
     let request = CompileRequest { path, options, files };
-    let unit = request.front(text, &mut context).unit;
+    let unit = request.run_front_end(text, &mut context).unit;
     let CompileContext { sources, names, mut sink } = context;
     let object = (!sink.has_errors()).then(|| object_of(&unit, &sources, options, &mut sink));
     let object = object.filter(|_| !sink.has_errors());
@@ -217,7 +217,7 @@ pub(crate) fn compile_here(
     options: &Options,
     files: &dyn pp::Files,
 ) -> Compilation {
-    let refuse = |error| Compilation::refused(path, error);
+    let refuse = |error| Compilation::failed(path, error);
     if let Some(what) = files::not_source(path, &text) {
         return refuse(Diagnostic::global_error(format!(
             "{} is not C source text but {what}",
@@ -301,7 +301,7 @@ pub fn advise(
         let read = |SharingProgram { thread, path, text }: SharingProgram| {
             let mut context = CompileContext::default();
             let request = CompileRequest { path: &path, options, files };
-            let unit = request.front(text, &mut context).unit;
+            let unit = request.run_front_end(text, &mut context).unit;
             (!context.sink.has_errors()).then_some((thread, path, unit, context.sources))
         };
         let units: Vec<_> = programs.into_iter().filter_map(read).collect();
@@ -320,7 +320,7 @@ pub fn advise(
         compilations.collect()
     });
     advice.unwrap_or_else(|error| {
-        first.iter().map(|path| Compilation::refused(path, (*error).clone())).collect()
+        first.iter().map(|path| Compilation::failed(path, (*error).clone())).collect()
     })
 }
 
@@ -369,7 +369,7 @@ pub struct FrontEndOutput {
 
 impl CompileRequest<'_> {
     /// Preprocesses, parses and checks a text.
-    pub fn front(self, text: Vec<u8>, context: &mut CompileContext) -> FrontEndOutput {
+    pub fn run_front_end(self, text: Vec<u8>, context: &mut CompileContext) -> FrontEndOutput {
         self.front_with(Headers::Whole, Arc::new(text), context).0
     }
 
@@ -449,7 +449,7 @@ pub fn generate_code(unit: &Unit, sources: &SourceMap, level: Level, sink: &mut 
         let about = FunctionFacts { symbol: ir.symbol, signature: ir.signature, end: ir.end };
         let name = builder.name(about.symbol).to_owned();
         match generator.function(&ir, builder.signatures(), &name) {
-            Ok(words) => builder.words(about, words),
+            Ok(words) => builder.add_machine_function(about, words),
             Err(error) => sink.report(*error),
         }
     }
@@ -464,7 +464,7 @@ fn optimize(ir: &mut Function, level: Level, candidates: &mut Candidates, source
         return;
     }
     let file = sources.place(ir.span).map_or(0, |place| place.file.as_u32());
-    candidates.offer(ir, file);
+    candidates.add(ir, file);
     if candidates.run(ir, file) {
         passes::run(ir, level);
     }

@@ -37,7 +37,7 @@ pub fn write(linked: &LinkedProgram) -> Result<Vec<u8>, Error> {
 /// # Errors
 /// The program exceeds the limits of the format.
 pub fn write_as(container: Container, linked: &LinkedProgram) -> Result<Vec<u8>, Error> {
-    let mut image = Image { container, ..bare(linked) };
+    let mut image = Image { container, ..image_without_symbols(linked) };
     let mut table = SymbolTable::default();
     table.functions(linked);
     table.objects(linked);
@@ -66,11 +66,11 @@ pub fn write_as(container: Container, linked: &LinkedProgram) -> Result<Vec<u8>,
 /// # Errors
 /// The program exceeds the limits of the format.
 pub fn write_stripped(linked: &LinkedProgram) -> Result<Vec<u8>, Error> {
-    bare(linked).write()
+    image_without_symbols(linked).write()
 }
 
 /// The image without symbols and line numbers.
-fn bare(linked: &LinkedProgram) -> Image {
+fn image_without_symbols(linked: &LinkedProgram) -> Image {
     Image {
         container: Container::Coff,
         target: match linked.target {

@@ -37,7 +37,7 @@ pub(super) struct Calls {
 }
 
 impl Calls {
-    pub(super) fn of(inspection: &Inspection, program: &Program) -> Self {
+    pub(super) fn build(inspection: &Inspection, program: &Program) -> Self {
         let taken = addresses_taken(inspection, program);
         let nodes = program.functions().iter().map(|function| {
             let address = program.address_of(function.at.0 as usize).get();
@@ -52,7 +52,7 @@ impl Calls {
             };
             for word in function.body.clone() {
                 match reference(program, word) {
-                    Reference::Call(address) => node.calls.extend(numbered(program, address)),
+                    Reference::Call(address) => node.calls.extend(function_index(program, address)),
                     Reference::Firmware(address) => {
                         node.firmware.insert(firmware_name(inspection, address));
                     }
@@ -122,7 +122,7 @@ fn addresses_taken(inspection: &Inspection, program: &Program) -> BTreeSet<usize
 }
 
 /// The number of the function at an address.
-fn numbered(program: &Program, address: u32) -> Option<usize> {
+fn function_index(program: &Program, address: u32) -> Option<usize> {
     program
         .functions()
         .iter()

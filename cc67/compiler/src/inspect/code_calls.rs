@@ -26,7 +26,7 @@ fn node(inspection: &Inspection, routines: &[Routine], code: &Routine, taken: &B
     let mut node = Node {
         name: code.name.clone(),
         address: code.address,
-        frame: super::frames::deepest(code),
+        frame: super::frames::max_frame_depth(code),
         calls: BTreeSet::new(),
         through_pointers: BTreeSet::new(),
         calls_pointers: false,
@@ -35,8 +35,8 @@ fn node(inspection: &Inspection, routines: &[Routine], code: &Routine, taken: &B
     for call in code.blocks.iter().filter_map(|block| block.call) {
         match call {
             CallTarget::At(address) => {
-                let address = machine::beyond(&inspection.image, address);
-                match numbered(routines, address) {
+                let address = machine::resolve_trampoline(&inspection.image, address);
+                match routine_index(routines, address) {
                     Some(index) => drop(node.calls.insert(index)),
                     None => drop(node.firmware.insert(firmware_name(inspection, address))),
                 }
@@ -50,7 +50,7 @@ fn node(inspection: &Inspection, routines: &[Routine], code: &Routine, taken: &B
     node
 }
 
-fn numbered(routines: &[Routine], address: u32) -> Option<usize> {
+fn routine_index(routines: &[Routine], address: u32) -> Option<usize> {
     routines.iter().position(|code| code.address == address)
 }
 
@@ -59,14 +59,14 @@ fn addresses_taken(inspection: &Inspection, routines: &[Routine]) -> BTreeSet<us
     let data = inspection.image.sections.iter().filter(|section| section.name != *".text");
     let words =
         data.flat_map(|section| section.data().as_chunks::<4>().0).map(|word| u32::from_le_bytes(*word));
-    let mut taken: BTreeSet<usize> = words.filter_map(|word| numbered(routines, word)).collect();
+    let mut taken: BTreeSet<usize> = words.filter_map(|word| routine_index(routines, word)).collect();
     for code in routines {
         let called =
             |address| code.blocks.iter().filter(|block| block.call == Some(CallTarget::At(address))).count();
         let constants = constants(code);
         for address in &constants {
             let uses = constants.iter().filter(|other| *other == address).count();
-            taken.extend(numbered(routines, *address).filter(|_| uses > called(*address)));
+            taken.extend(routine_index(routines, *address).filter(|_| uses > called(*address)));
         }
     }
     taken

@@ -37,7 +37,7 @@ impl Inspection {
             for found in code.loops() {
                 let lines = self.lines_of(code, &found);
                 let _ = write!(out, "{}    an iteration of the loop{lines}", span(found.iteration, slice));
-                let calls = self.called(&code.blocks[found.first..=found.last]);
+                let calls = self.called_names(&code.blocks[found.first..=found.last]);
                 let _ = match calls.as_str() {
                     "" => writeln!(out),
                     calls => writeln!(out, ", without {calls}"),
@@ -74,7 +74,7 @@ impl Inspection {
     }
 
     /// The names of the functions called by blocks.
-    fn called(&self, blocks: &[Block]) -> String {
+    fn called_names(&self, blocks: &[Block]) -> String {
         let mut names: Vec<String> =
             blocks.iter().filter_map(|block| Some(self.callee(block.call?))).collect();
         names.sort();
@@ -84,7 +84,7 @@ impl Inspection {
 
     fn callee(&self, call: CallTarget) -> String {
         match call {
-            CallTarget::At(address) => firmware_name(self, machine::beyond(&self.image, address)),
+            CallTarget::At(address) => firmware_name(self, machine::resolve_trampoline(&self.image, address)),
             CallTarget::Pointer => "what a pointer calls".to_owned(),
         }
     }
@@ -201,7 +201,8 @@ impl Listing<'_> {
             code.name,
             code.address,
             code.bytes,
-            super::frames::deepest(code).map_or_else(|| "unknown".to_owned(), |bytes| bytes.to_string()),
+            super::frames::max_frame_depth(code)
+                .map_or_else(|| "unknown".to_owned(), |bytes| bytes.to_string()),
             cycles(own, self.inspection.board().cycles_of_tick()),
         );
         let mut last = None;

@@ -62,7 +62,7 @@ impl CodePrinter<'_> {
                 self.source(line.as_ref());
                 last = line;
             }
-            let note = self.note(word, || op.to_string());
+            let note = self.annotate(word, || op.to_string());
             let separator = if note.is_empty() { "" } else { "  ; " };
             let _ = writeln!(self.out, "  {address:08x} @{word}: {op}{separator}{note}");
         }
@@ -83,7 +83,7 @@ impl CodePrinter<'_> {
     }
 
     /// Names for the numbers of the instruction with number `word`.
-    fn note(&self, word: usize, printed: impl FnOnce() -> String) -> String {
+    fn annotate(&self, word: usize, printed: impl FnOnce() -> String) -> String {
         match reference(self.program, word) {
             Reference::Call(address) => self.inspection.function_name(address).unwrap_or_default().to_owned(),
             Reference::Firmware(address) => firmware_name(self.inspection, address),
@@ -107,7 +107,7 @@ impl CodePrinter<'_> {
             let found = all.find(|variable| address.wrapping_sub(variable.address.get()) < variable.size)?;
             Some((found.name, found.address.get()))
         };
-        let entry = self.inspection.at(address).map(|entry| (entry.name.as_str(), entry.address));
+        let entry = self.inspection.entry_at(address).map(|entry| (entry.name.as_str(), entry.address));
         match entry.or_else(variable) {
             Some((name, start)) if start == address => name.to_owned(),
             Some((name, start)) => format!("{name}+{}", address - start),

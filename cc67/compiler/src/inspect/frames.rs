@@ -8,7 +8,7 @@ use super::machine::{Block, Routine};
 
 /// The most bytes below the stack pointer of the caller that a function takes for itself; `None` where it moves the
 /// pointer by an amount that the code does not show.
-pub(super) fn deepest(code: &Routine) -> Option<u32> {
+pub(super) fn max_frame_depth(code: &Routine) -> Option<u32> {
     let mut entered: Vec<Option<i64>> = vec![None; code.blocks.len()];
     let mut open = vec![(0, 0)];
     let (mut deepest, mut steps) = (0, 0);
@@ -23,7 +23,7 @@ pub(super) fn deepest(code: &Routine) -> Option<u32> {
             continue;
         }
         entered[index] = Some(depth);
-        let (below, end) = through(code, block, depth)?;
+        let (below, end) = depth_through_block(code, block, depth)?;
         deepest = deepest.max(below);
         open.extend(block.edges.iter().map(|edge| (edge.to, end)));
     }
@@ -31,10 +31,10 @@ pub(super) fn deepest(code: &Routine) -> Option<u32> {
 }
 
 /// The deepest place in a block that begins at a depth, and the depth at its end.
-fn through(code: &Routine, block: &Block, start: i64) -> Option<(i64, i64)> {
+fn depth_through_block(code: &Routine, block: &Block, start: i64) -> Option<(i64, i64)> {
     let (mut deepest, mut depth) = (start, start);
     for inst in code.packets[block.packets.clone()].iter().flat_map(|packet| &packet.insts) {
-        let taken = taken(inst)?;
+        let taken = stack_bytes(inst)?;
         // A conditional release is assumed not to happen.
         if inst.pred() == Pred::Always || taken > 0 {
             depth += taken;
@@ -45,9 +45,9 @@ fn through(code: &Routine, block: &Block, start: i64) -> Option<(i64, i64)> {
 }
 
 /// The bytes that an instruction takes from the stack; negative if it gives them back.
-fn taken(inst: &Inst) -> Option<i64> {
+fn stack_bytes(inst: &Inst) -> Option<i64> {
     if let Some(mem) = inst.mem().filter(|mem| mem.base == STACK && mem.update != Update::None) {
-        return moved(inst, mem).map(|bytes| -bytes);
+        return base_increment(inst, mem).map(|bytes| -bytes);
     }
     if !inst.writes().any(|write| write.reg == STACK) {
         return Some(0);
@@ -66,7 +66,7 @@ fn taken(inst: &Inst) -> Option<i64> {
 }
 
 /// The bytes that an access adds to its base.
-fn moved(inst: &Inst, mem: Mem) -> Option<i64> {
+fn base_increment(inst: &Inst, mem: Mem) -> Option<i64> {
     let Offset::Const(count) = mem.offset else { return None };
     let bytes = i64::from(inst.mnemonic().bytes()?) * i64::from(count);
     Some(if mem.negative { -bytes } else { bytes })

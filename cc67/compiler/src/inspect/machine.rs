@@ -180,7 +180,7 @@ impl Routine {
                 (None, Some(Branch::Register(reg))) if reg != LINK && !self.keeps_link(*packet, reg) => {
                     if self.sets_link(*packet) {
                         blocks[from].call =
-                            Some(self.pointed(*packet, reg).map_or(CallTarget::Pointer, CallTarget::At));
+                            Some(self.constant_at(*packet, reg).map_or(CallTarget::Pointer, CallTarget::At));
                         continue;
                     }
                     let mut targets: Vec<usize> =
@@ -239,7 +239,7 @@ impl Routine {
     }
 
     /// The constant that a register holds at a packet: of an `MVK` and an `MVKH` before it.
-    fn pointed(&self, packet: usize, reg: Reg) -> Option<u32> {
+    fn constant_at(&self, packet: usize, reg: Reg) -> Option<u32> {
         let mut high = None;
         for inst in self.packets[..packet].iter().rev().flat_map(|packet| packet.insts.iter().rev()) {
             if !inst.writes().any(|write| write.reg == reg) {
@@ -276,7 +276,7 @@ fn packets(address: u32, words: &[u32]) -> Result<Vec<Packet>, u32> {
 }
 
 /// The target of a call of an address: functions out of reach are called through a jump after the program's code.
-pub(super) fn beyond(image: &coff::Image, address: u32) -> u32 {
+pub(super) fn resolve_trampoline(image: &coff::Image, address: u32) -> u32 {
     let far = || {
         let text = image.section(".text")?;
         let at = address.checked_sub(text.address)? as usize;

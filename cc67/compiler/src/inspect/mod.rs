@@ -67,7 +67,7 @@ impl Inspection {
     pub fn headers(&self) -> String {
         let mut text = dump::headers(&self.image);
         if let Some(program) = &self.image.program
-            && let Some(entry) = self.at(self.main().unwrap_or(program.entry))
+            && let Some(entry) = self.entry_at(self.main().unwrap_or(program.entry))
         {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "entry is `{}`", entry.name);
@@ -90,7 +90,7 @@ impl Inspection {
 
     /// The function or object that contains `address`.
     #[must_use]
-    pub fn at(&self, address: u32) -> Option<&Entry> {
+    pub fn entry_at(&self, address: u32) -> Option<&Entry> {
         let after = self.symbols.partition_point(|entry| entry.address <= address);
         let entry = self.symbols.get(after.checked_sub(1)?)?;
         let is_inside = address - entry.address < entry.size.unwrap_or(0).max(1);
@@ -99,7 +99,7 @@ impl Inspection {
 
     /// The name of a function at exactly this address.
     fn function_name(&self, address: u32) -> Option<&str> {
-        let entry = self.at(address).filter(|entry| entry.address == address)?;
+        let entry = self.entry_at(address).filter(|entry| entry.address == address)?;
         Some(&entry.name)
     }
 
@@ -123,7 +123,7 @@ impl Inspection {
 
     fn call_graph(&self) -> Result<Calls, String> {
         match (&self.program, self.image.target) {
-            (Ok(program), _) => Ok(Calls::of(self, program)),
+            (Ok(program), _) => Ok(Calls::build(self, program)),
             (Err(_), Target::C6000) => Calls::of_code(self),
             (Err(reason), _) => Err(reason.clone()),
         }

@@ -49,7 +49,11 @@ pub(super) fn render(inspection: &Inspection, calls: &Calls) -> String {
     let _ = match depths.get(main) {
         Some(Depth::Bytes(bytes, _)) => {
             let much = if *bytes > limit { ": too much" } else { "" };
-            writeln!(out, "worst chain: {} = {bytes} of {limit} bytes{much}", chain(calls, &depths, main))
+            writeln!(
+                out,
+                "worst chain: {} = {bytes} of {limit} bytes{much}",
+                deepest_path(calls, &depths, main)
+            )
         }
         _ => writeln!(out, "worst chain: unknown: {}", reason(calls, main)),
     };
@@ -90,7 +94,7 @@ impl Depths<'_> {
                         path.pop();
                         at_work[index] = false;
                         if depths[index].is_none() {
-                            depths[index] = Some(self.of(node, &depths));
+                            depths[index] = Some(self.node_depth(node, &depths));
                         }
                     }
                 }
@@ -100,7 +104,7 @@ impl Depths<'_> {
     }
 
     /// The depth of one function from the depths of its callees; a callee without a depth is still being analysed.
-    fn of(&self, node: &Node, depths: &[Option<Depth>]) -> Depth {
+    fn node_depth(&self, node: &Node, depths: &[Option<Depth>]) -> Depth {
         let Some(frame) = node.frame else { return Depth::Unknown };
         let mut deepest = (0, DeepestCallee::Nothing);
         let known = FIRMWARE_FUNCTIONS.iter().filter_map(|row| Some((row.name, row.attributes.stack?)));
@@ -125,7 +129,7 @@ fn callees(node: &Node) -> impl Iterator<Item = usize> {
 }
 
 /// The names along the deepest path, `main (16) → read (120)`.
-fn chain(calls: &Calls, depths: &[Depth], start: usize) -> String {
+fn deepest_path(calls: &Calls, depths: &[Depth], start: usize) -> String {
     let mut names = Vec::new();
     let mut next = DeepestCallee::Function(start);
     loop {

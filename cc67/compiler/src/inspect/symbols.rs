@@ -122,7 +122,7 @@ fn kind(image: &Image, symbol: &Symbol) -> EntryKind {
         SectionNumber(1) => EntryKind::Function,
         _ if image.target == Target::CC67 => EntryKind::Object,
         // The vendor's compiler writes section 2 for everything, so the address decides.
-        _ if inside(image, symbol.value) => EntryKind::Object,
+        _ if is_inside_program(image, symbol.value) => EntryKind::Object,
         _ => EntryKind::Absolute,
     }
 }
@@ -133,7 +133,7 @@ fn is_elf(image: &Image) -> bool {
 }
 
 /// Reports whether an address is between the first and the last byte of the program.
-fn inside(image: &Image, address: u32) -> bool {
+fn is_inside_program(image: &Image, address: u32) -> bool {
     let sections = image.sections.iter().filter(|section| section.size() > 0);
     let start = sections.clone().map(|section| section.address).min().unwrap_or(0);
     let end = sections.map(|section| u64::from(section.address) + section.size()).max().unwrap_or(0);

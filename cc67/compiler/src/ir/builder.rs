@@ -97,7 +97,7 @@ impl Builder {
     }
 
     /// A block that only charges a cost and continues at `to`; it is placed before `to`, if that is yet to be opened.
-    pub fn way(&mut self, to: BlockId, cycles: u32) -> BlockId {
+    pub fn charge_block(&mut self, to: BlockId, cycles: u32) -> BlockId {
         let origin = self.origin;
         let insts = vec![Inst { kind: InstKind::Cost { cycles }, origin }];
         let way = self.function.blocks.push(Block { insts, terminator: Terminator::Jump(to), origin });

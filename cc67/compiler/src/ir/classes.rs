@@ -17,7 +17,7 @@ pub(super) struct Classes {
 
 impl Classes {
     /// Records the class of a value; returns its earlier class, if that differs.
-    pub(super) fn say(&mut self, value: ValueId, class: Class) -> Result<(), Class> {
+    pub(super) fn record(&mut self, value: ValueId, class: Class) -> Result<(), Class> {
         match self.known[value].replace(class) {
             Some(before) if before != class => Err(before),
             _ => Ok(()),
@@ -30,7 +30,7 @@ impl Classes {
     }
 
     /// Carries classes along the copies.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn propagate(&mut self) {
         let mut is_changed = true;
         while is_changed {
             is_changed = false;

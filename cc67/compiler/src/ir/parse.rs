@@ -78,13 +78,13 @@ pub fn parse(text: &str) -> Result<Functions, ParseError> {
         let mut line = Cursor::new(content);
         let read = if line.keyword("function") {
             finish(&mut unit, open.take())?;
-            Body::begin(&mut line, number, &mut unit).map(|body| open = Some(body))
+            Body::read_head(&mut line, number, &mut unit).map(|body| open = Some(body))
         } else if let Some(body) = &mut open {
             body.line(&mut line, number, &mut unit.symbols)
         } else {
             Err("a function begins with `function name(…)`".to_owned())
         };
-        read.and_then(|()| line.end()).map_err(|message| ParseError { line: number, message })?;
+        read.and_then(|()| line.expect_end()).map_err(|message| ParseError { line: number, message })?;
     }
     finish(&mut unit, open)?;
     Ok(unit)

@@ -263,7 +263,7 @@ fn undeclared(function: &Function) -> Vec<ValueId> {
     let mut classes = Classes::default();
     let mut read = Vec::new();
     for param in &function.params {
-        let _ = classes.say(*param, function.values[*param]);
+        let _ = classes.record(*param, function.values[*param]);
     }
     for id in &function.layout {
         let block = &function.blocks[*id];
@@ -277,14 +277,14 @@ fn undeclared(function: &Function) -> Vec<ValueId> {
             match (kind, kind.dst()) {
                 (InstKind::Copy { dst, src: Operand::Value(src) }, _) => classes.copy(dst, src),
                 (_, Some(dst)) => {
-                    let _ = classes.say(dst, function.values[dst]);
+                    let _ = classes.record(dst, function.values[dst]);
                 }
                 (_, None) => {}
             }
         }
         read.extend(block.terminator.operand().and_then(Operand::as_value));
     }
-    classes.settle();
+    classes.propagate();
     read.sort_unstable();
     read.dedup();
     read.retain(|value| classes.get(*value).is_none());

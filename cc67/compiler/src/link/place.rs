@@ -48,7 +48,7 @@ pub(super) fn place(
     addresses: &SectionAddresses,
 ) -> Placement {
     let text_end = base.get().saturating_add(layout.words * layout.word_bytes);
-    let data_address = addresses.data.unwrap_or_else(|| behind(text_end));
+    let data_address = addresses.data.unwrap_or_else(|| next_section_start(text_end));
     let mut placed = Placement {
         data_address,
         data_size: 0,
@@ -65,17 +65,18 @@ pub(super) fn place(
         placed.functions[*object][*index as usize] = address;
         let size = (function.words.end - function.words.start) * layout.word_bytes;
         let symbol = &objects[*object].symbols[function.symbol];
-        placed.symbols.push(linked(symbol, address, size, Section::Text, layout, *object));
+        placed.symbols.push(linked_symbol(symbol, address, size, Section::Text, layout, *object));
     }
     placed.data(objects, reached, layout);
-    let bss_address =
-        addresses.bss.unwrap_or_else(|| behind(data_address.get().saturating_add(placed.data_size)));
+    let bss_address = addresses
+        .bss
+        .unwrap_or_else(|| next_section_start(data_address.get().saturating_add(placed.data_size)));
     placed.bss(objects, names, reached, layout, bss_address);
     placed
 }
 
 /// The start of the section after one that ends at `end`.
-fn behind(end: u32) -> GuestAddr {
+fn next_section_start(end: u32) -> GuestAddr {
     GuestAddr::new(end.checked_next_multiple_of(SECTION_ALIGN).unwrap_or(u32::MAX))
 }
 
@@ -90,7 +91,7 @@ impl Placement {
                 self.data[index][item] = GuestAddr::new(at);
                 let size = data.bytes.end - data.bytes.start;
                 let address = GuestAddr::new(at);
-                self.symbols.push(linked(symbol, address, size, Section::Data, layout, index));
+                self.symbols.push(linked_symbol(symbol, address, size, Section::Data, layout, index));
                 at = at.saturating_add(size);
             }
         }
@@ -111,7 +112,7 @@ impl Placement {
             let address = GuestAddr::new(at);
             self.bss[index] = address;
             let symbol = &objects[item.object].symbols[item.symbol];
-            self.symbols.push(linked(symbol, address, item.size, Section::Bss, layout, item.object));
+            self.symbols.push(linked_symbol(symbol, address, item.size, Section::Bss, layout, item.object));
             at = at.saturating_add(item.size);
         }
         self.bss_address = start;
@@ -119,7 +120,7 @@ impl Placement {
     }
 }
 
-fn linked(
+fn linked_symbol(
     symbol: &Symbol,
     address: GuestAddr,
     size: u32,
@@ -152,7 +153,7 @@ pub(super) fn check_size(
     let end = placed.bss_address.get().saturating_add(placed.bss_size);
     if end > limit {
         let (excess, space) = (end - limit, limit - text.get());
-        let kind = LinkErrorKind::TooLarge { excess, space, largest: largest(placed) };
+        let kind = LinkErrorKind::TooLarge { excess, space, largest: largest_symbols(placed) };
         return Err(vec![LinkError::global(kind)]);
     }
     // The thread in whose space the text begins.
@@ -168,11 +169,11 @@ pub(super) fn check_size(
         return Ok(Vec::new());
     }
     let excess = end - own_end;
-    Ok(vec![LinkWarning::EntersOtherThreads { excess, entered, largest: largest(placed) }])
+    Ok(vec![LinkWarning::EntersOtherThreads { excess, entered, largest: largest_symbols(placed) }])
 }
 
 /// The largest symbols, `name (bytes)`.
-fn largest(placed: &Placement) -> Vec<String> {
+fn largest_symbols(placed: &Placement) -> Vec<String> {
     let mut symbols: Vec<&LinkedSymbol> = placed.symbols.iter().collect();
     symbols.sort_by_key(|symbol| std::cmp::Reverse(symbol.size));
     symbols.iter().take(NAMED).map(|symbol| format!("{} ({})", symbol.name, symbol.size)).collect()

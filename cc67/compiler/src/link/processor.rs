@@ -10,7 +10,7 @@ use super::error::{LinkError, LinkErrorKind};
 use super::reach::{ReachableParts, Target};
 use super::text::{Addresses, TextLayout};
 use crate::c67x::ALIGN;
-use crate::c67x::text::{branch, far_jump, half};
+use crate::c67x::text::{branch, far_jump, with_half_constant};
 use crate::object::Object;
 use crate::relocation::{FixupKind, RelocationKind};
 use crate::target;
@@ -89,13 +89,15 @@ pub(super) fn text(objects: &[Object], layout: &TextLayout, addresses: &Addresse
             let target = match &addresses.reached.targets[*object][relocation.symbol] {
                 // A function refers to itself without needing itself.
                 Target::Unknown => addresses.placed.function((*object, *index)),
-                target => addresses.of(target),
+                target => addresses.address_of(target),
             };
             let at = start + relocation.word - function.words.start;
             let word = &mut words[at as usize];
             *word = match kind {
-                FixupKind::Low(offset) => half(*word, target.get().wrapping_add_signed(offset)),
-                FixupKind::High(offset) => half(*word, target.get().wrapping_add_signed(offset) >> 16),
+                FixupKind::Low(offset) => with_half_constant(*word, target.get().wrapping_add_signed(offset)),
+                FixupKind::High(offset) => {
+                    with_half_constant(*word, target.get().wrapping_add_signed(offset) >> 16)
+                }
                 FixupKind::Own(offset) => target.get().wrapping_add_signed(offset),
                 FixupKind::Near => {
                     let base = addresses.base.get();

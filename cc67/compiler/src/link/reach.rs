@@ -75,7 +75,7 @@ pub(super) fn reach(
         pending: VecDeque::new(),
     };
     if let Some((object, index)) = main {
-        walk.need(DefinitionIndex::Function(object, index));
+        walk.mark_needed(DefinitionIndex::Function(object, index));
     }
     if !options.gc || main.is_none() {
         walk.need_all();
@@ -108,13 +108,14 @@ impl Walk<'_> {
     fn need_all(&mut self) {
         for (object, unit) in self.objects.iter().enumerate() {
             (0..unit.functions.len())
-                .for_each(|index| self.need(DefinitionIndex::Function(object, index as u32)));
-            (0..unit.objects.len()).for_each(|index| self.need(DefinitionIndex::Data(object, index as u32)));
+                .for_each(|index| self.mark_needed(DefinitionIndex::Function(object, index as u32)));
+            (0..unit.objects.len())
+                .for_each(|index| self.mark_needed(DefinitionIndex::Data(object, index as u32)));
         }
         self.reached.bss.fill(true);
     }
 
-    fn need(&mut self, defined: DefinitionIndex) {
+    fn mark_needed(&mut self, defined: DefinitionIndex) {
         let needed = match defined {
             DefinitionIndex::Function(object, index) => &mut self.reached.functions[object][index as usize],
             DefinitionIndex::Data(object, index) => &mut self.reached.data[object][index as usize],
@@ -155,7 +156,7 @@ impl Walk<'_> {
         }
         let symbol = &self.objects[object].symbols[id];
         let target = if let Some(defined) = self.names.find(object, id, symbol) {
-            self.need(defined);
+            self.mark_needed(defined);
             Target::Program(defined)
         } else if let Some(FirmwareSymbol { address, kind }) = self.options.firmware.find(&symbol.name) {
             let is_function = matches!(kind, FirmwareKind::Function(_));
@@ -176,7 +177,7 @@ impl Walk<'_> {
             let result = function.has_result().then_some(Class::I32);
             Target::Function(address, Some(Signature { params, result }))
         } else {
-            self.miss(object, id, user);
+            self.record_undefined(object, id, user);
             Target::Unknown
         };
         self.reached.targets[object][id] = target;
@@ -189,7 +190,7 @@ impl Walk<'_> {
     }
 
     /// Records an undefined symbol, once for each name, with all of its users.
-    fn miss(&mut self, object: usize, id: SymbolId, user: User) {
+    fn record_undefined(&mut self, object: usize, id: SymbolId, user: User) {
         let unit = &self.objects[object];
         let symbol = &unit.symbols[id];
         let user = user.describe(unit);

@@ -143,7 +143,7 @@ pub(super) struct Addresses<'a> {
 }
 
 impl Addresses<'_> {
-    pub(super) fn of(&self, target: &Target) -> GuestAddr {
+    pub(super) fn address_of(&self, target: &Target) -> GuestAddr {
         match *target {
             Target::Unknown => GuestAddr::NULL,
             Target::Function(address, _) | Target::Variable(address) => address,
@@ -197,13 +197,13 @@ impl Writer<'_> {
         };
         let start = self.text.len();
         for (at, mut bytes) in
-            (function.words.start..).zip(unit.text.linked(function.words.clone(), &numbers))
+            (function.words.start..).zip(unit.text.linked_bytes(function.words.clone(), &numbers))
         {
             if let Some(relocation) = relocations.next_if(|relocation| relocation.word == at) {
                 match relocation.kind {
                     RelocationKind::Address => {
                         let target = &self.addresses.reached.targets[object][relocation.symbol];
-                        add_address(&mut bytes[4..], self.addresses.of(target));
+                        add_address(&mut bytes[4..], self.addresses.address_of(target));
                     }
                     // Units for different targets cannot be linked together.
                     RelocationKind::Processor(_) => {}
@@ -234,7 +234,8 @@ impl Writer<'_> {
             if fits {
                 return Ok(());
             }
-            let (name, called, defined) = (symbol.name.clone(), show(called), show(defined));
+            let (name, called, defined) =
+                (symbol.name.clone(), signature_text(called), signature_text(defined));
             Err(LinkErrorKind::CallMismatch { name, called, defined })
         };
         match &self.addresses.reached.targets[object][relocation.symbol] {
@@ -274,7 +275,7 @@ fn fail(
 }
 
 /// A signature for messages.
-fn show(signature: &Signature) -> String {
+fn signature_text(signature: &Signature) -> String {
     let params: Vec<String> = signature.params.iter().map(ToString::to_string).collect();
     let result = signature.result.map_or_else(|| "void".to_owned(), |class| class.to_string());
     format!("{result} ({})", params.join(", "))
@@ -304,7 +305,7 @@ pub(super) fn data(objects: &[Object], addresses: &Addresses<'_>) -> Vec<u8> {
             for relocation in &object.data_relocations[relocations] {
                 let target = &addresses.reached.targets[index][relocation.symbol];
                 let at = start + (relocation.offset - initialized.bytes.start) as usize;
-                add_address(&mut data[at..], addresses.of(target));
+                add_address(&mut data[at..], addresses.address_of(target));
             }
         }
     }

@@ -14,7 +14,7 @@ impl Lowering<'_> {
             typed::Callee::Symbol(_) => None,
             typed::Callee::Pointer(pointer) => {
                 let target = self.value(pointer);
-                Some(self.hold(target))
+                Some(self.hold_operand(target))
             }
         };
         let arguments = self.arguments(call);
@@ -31,7 +31,7 @@ impl Lowering<'_> {
         };
         let (signature, arguments) = match callee {
             Callee::Symbol(symbol) if self.definitions.get(symbol).is_some() => {
-                self.fit(symbol, &declared, arguments)
+                self.adapt_arguments(symbol, &declared, arguments)
             }
             _ => (self.signatures.intern(&declared), arguments),
         };
@@ -48,7 +48,7 @@ impl Lowering<'_> {
         self.charge_result(wanted);
         match (dst, wanted) {
             (Some(dst), Some(wanted)) if result != Some(wanted) => {
-                let adapted = self.adapt(dst.into(), wanted);
+                let adapted = self.adapt_class(dst.into(), wanted);
                 self.place_in(adapted, into)
             }
             (Some(dst), _) => dst.into(),
@@ -64,7 +64,7 @@ impl Lowering<'_> {
         let variable = call.variable.as_deref();
         for argument in call.arguments.iter().chain(variable.unwrap_or(&[])) {
             let value = self.value(*argument);
-            let held = self.hold(value);
+            let held = self.hold_operand(value);
             self.held.push(held);
         }
         let mut operands: Vec<Operand> = Vec::with_capacity(self.held.len() - bottom);
@@ -120,7 +120,7 @@ impl Lowering<'_> {
 
     /// Adapts the arguments to the definition of a function of this unit: a call through an old-style declaration may
     /// pass other types, too many or too few.
-    fn fit(
+    fn adapt_arguments(
         &mut self,
         symbol: typed::SymbolId,
         declared: &Signature,
@@ -137,7 +137,7 @@ impl Lowering<'_> {
         arguments.truncate(params.len());
         for (index, class) in params.into_iter().enumerate() {
             match arguments.get(index).copied() {
-                Some(argument) => arguments[index] = self.adapt(argument, class),
+                Some(argument) => arguments[index] = self.adapt_class(argument, class),
                 None => arguments.push(class.zero().into()),
             }
         }

@@ -39,23 +39,23 @@ impl Lowering<'_> {
                 self.branch(inner, Sense::JumpIfFalse, otherwise, then);
             }
             ExprKind::Unary(UnaryOp::Not, inner) => {
-                let (then, otherwise) = self.turned(Sense::JumpIfTrue, sense, then, otherwise);
+                let (then, otherwise) = self.oriented_paths(Sense::JumpIfTrue, sense, then, otherwise);
                 self.branch(inner, Sense::JumpIfFalse, otherwise, then);
             }
             ExprKind::And(..) => {
-                let (then, otherwise) = self.turned(Sense::JumpIfFalse, sense, then, otherwise);
+                let (then, otherwise) = self.oriented_paths(Sense::JumpIfFalse, sense, then, otherwise);
                 let test = |this: &mut Self, term, next| {
                     this.branch(term, Sense::JumpIfFalse, next, otherwise);
                 };
-                self.chain(condition, Sense::JumpIfFalse, test, then, otherwise);
+                self.lower_chain(condition, Sense::JumpIfFalse, test, then, otherwise);
             }
             ExprKind::Or(..) => {
-                let (then, otherwise) = self.turned(Sense::JumpIfTrue, sense, then, otherwise);
+                let (then, otherwise) = self.oriented_paths(Sense::JumpIfTrue, sense, then, otherwise);
                 let test = |this: &mut Self, term, next| this.branch(term, Sense::JumpIfTrue, then, next);
-                self.chain(condition, Sense::JumpIfTrue, test, then, otherwise);
+                self.lower_chain(condition, Sense::JumpIfTrue, test, then, otherwise);
             }
             ExprKind::Comma(first, second) => {
-                self.effect(first);
+                self.lower_effect(first);
                 self.branch(second, sense, then, otherwise);
             }
             ExprKind::Compare(operators::CompareOp::Equal, a, b) if self.is_word_zero(b) => {
@@ -83,7 +83,7 @@ impl Lowering<'_> {
     }
 
     /// The paths of a condition that branches in the opposite sense: falling through becomes a jump.
-    fn turned(
+    fn oriented_paths(
         &mut self,
         natural: Sense,
         wanted: Sense,
@@ -105,7 +105,7 @@ impl Lowering<'_> {
 
     /// Tests the terms of a chain of one operator, `a && b && c …`: each but the last continues at the next through
     /// `test`. Such chains are nested on the left; they are walked iteratively.
-    fn chain(
+    fn lower_chain(
         &mut self,
         id: ExprId,
         sense: Sense,

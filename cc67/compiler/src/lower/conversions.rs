@@ -55,7 +55,7 @@ impl Lowering<'_> {
     }
 
     /// Makes the class of an argument or result the expected one, where a call and a definition disagree.
-    pub(super) fn adapt(&mut self, operand: Operand, to: Class) -> Operand {
+    pub(super) fn adapt_class(&mut self, operand: Operand, to: Class) -> Operand {
         let type_of = |class| match class {
             Class::I32 => Types::INT,
             Class::I64 => Types::LONG_LONG,

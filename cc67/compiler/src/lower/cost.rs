@@ -136,7 +136,7 @@ impl Lowering<'_> {
     /// A block that charges `cycles` and continues at `to`; just `to` if there are no cycles.
     pub(super) fn costly_way(&mut self, to: BlockId, cycles: u32) -> Option<BlockId> {
         self.cost_model.as_ref()?;
-        Some(self.builder.way(to, cycles))
+        Some(self.builder.charge_block(to, cycles))
     }
 
     fn calls(&self, id: ExprId) -> bool {
@@ -250,19 +250,19 @@ impl Lowering<'_> {
         let class = self.class_or_int(self.function.places[place].ty);
         let waits = match self.reach(place) {
             VendorAccess::Local => {
-                self.cost(cost_table::either(class, 7, 8));
+                self.cost(cost_table::by_class(class, 7, 8));
                 false
             }
             VendorAccess::Global { waits } => {
-                self.cost(cost_table::either(class, 7, 8));
+                self.cost(cost_table::by_class(class, 7, 8));
                 waits
             }
             VendorAccess::Through { fixed, waits } => {
-                self.cost(fixed + cost_table::either(class, 5, 6));
+                self.cost(fixed + cost_table::by_class(class, 5, 6));
                 waits
             }
         };
-        self.wait(if waits { cost_table::words(class) } else { 0 });
+        self.wait(if waits { cost_table::memory_words(class) } else { 0 });
         if let PlaceKind::Bits(..) = self.function.places[place].kind {
             self.cost(2 * cost_table::STEP);
         }
@@ -292,19 +292,19 @@ impl Lowering<'_> {
         let class = self.class_or_int(self.function.places[place].ty);
         let waits = match self.reach(place) {
             VendorAccess::Local => {
-                self.cost(cost_table::either(class, 3, 5));
+                self.cost(cost_table::by_class(class, 3, 5));
                 false
             }
             VendorAccess::Global { waits } => {
-                self.cost(cost_table::either(class, 3, 4));
+                self.cost(cost_table::by_class(class, 3, 4));
                 waits
             }
             VendorAccess::Through { waits, .. } => {
-                self.cost(cost_table::either(class, 1, 2));
+                self.cost(cost_table::by_class(class, 1, 2));
                 waits
             }
         };
-        self.wait(if waits { cost_table::words(class) } else { 0 });
+        self.wait(if waits { cost_table::memory_words(class) } else { 0 });
         if let PlaceKind::Bits(..) = self.function.places[place].kind {
             self.cost(7 + 5 * cost_table::STEP);
         }
@@ -559,7 +559,7 @@ impl Lowering<'_> {
             VendorOperand::Simple | VendorOperand::Element => 0,
             VendorOperand::Result => -cost_table::result(class),
             VendorOperand::Computed if is_comparison => 0,
-            VendorOperand::Computed => cost_table::either(class, cost_table::MOVE, 2 * cost_table::MOVE),
+            VendorOperand::Computed => cost_table::by_class(class, cost_table::MOVE, 2 * cost_table::MOVE),
         });
     }
 

@@ -42,13 +42,13 @@ const fn is_pair(class: Class) -> bool {
 }
 
 /// `single` for classes that fit a register, `pair` for the others.
-pub(super) const fn either(class: Class, single: i32, pair: i32) -> i32 {
+pub(super) const fn by_class(class: Class, single: i32, pair: i32) -> i32 {
     if is_pair(class) { pair } else { single }
 }
 
 /// Words of memory that a value takes.
-pub(super) const fn words(class: Class) -> i32 {
-    either(class, 1, 2)
+pub(super) const fn memory_words(class: Class) -> i32 {
+    by_class(class, 1, 2)
 }
 
 /// A constant.
@@ -72,22 +72,22 @@ pub(super) const fn constant_words(class: Class) -> i32 {
 
 /// Saving a computed value across a call or division.
 pub(super) const fn save(class: Class) -> i32 {
-    either(class, 10, 13)
+    by_class(class, 10, 13)
 }
 
 /// Taking the result of a call.
 pub(super) const fn result(class: Class) -> i32 {
-    either(class, 1, 2)
+    by_class(class, 1, 2)
 }
 
 /// Passing an argument to a function of the program, or to one of the firmware.
 pub(super) const fn argument(class: Class, is_firmware: bool) -> i32 {
-    if is_firmware { either(class, 2, 3) } else { either(class, 3, 5) }
+    if is_firmware { by_class(class, 2, 3) } else { by_class(class, 3, 5) }
 }
 
 /// The function of the firmware that divides floating numbers.
 pub(super) const fn division(class: Class) -> i32 {
-    either(class, 30, 84)
+    by_class(class, 30, 84)
 }
 
 /// An operator, including the function that divides if it is one.
@@ -110,7 +110,7 @@ pub(super) const fn binary(op: BinaryOp, class: Class) -> i32 {
 
 /// A comparison.
 pub(super) const fn compare(class: Class) -> i32 {
-    either(class, 1, 2)
+    by_class(class, 1, 2)
 }
 
 /// A conversion of one class to another.

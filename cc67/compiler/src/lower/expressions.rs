@@ -54,15 +54,15 @@ impl Lowering<'_> {
             ExprKind::Unary(op, operand) => self.unary(op, operand, into),
             ExprKind::Binary(..) => self.binary(id, into),
             ExprKind::Compare(op, a, b) => self.compare(op, a, b, into),
-            ExprKind::And(..) | ExprKind::Or(..) => self.truth(id, into),
+            ExprKind::And(..) | ExprKind::Or(..) => self.lower_truth(id, into),
             ExprKind::Conditional(condition, a, b) => self.conditional(condition, a, b, expr.ty, into),
             ExprKind::Comma(first, second) => {
-                self.effect(first);
+                self.lower_effect(first);
                 self.value_in(second, into)
             }
             ExprKind::Convert(operand) => {
                 if types::class(&self.unit.types, expr.ty).is_none() {
-                    self.effect(operand);
+                    self.lower_effect(operand);
                     return Operand::int(0);
                 }
                 let from = self.function.exprs[operand].ty;
@@ -80,17 +80,17 @@ impl Lowering<'_> {
     }
 
     /// Evaluates an expression whose value is not needed.
-    pub(super) fn effect(&mut self, id: ExprId) {
+    pub(super) fn lower_effect(&mut self, id: ExprId) {
         let expr = &self.function.exprs[id];
         match expr.kind {
             ExprKind::Update(ref update) => {
                 self.step(update);
             }
             ExprKind::Comma(first, second) => {
-                self.effect(first);
-                self.effect(second);
+                self.lower_effect(first);
+                self.lower_effect(second);
             }
-            ExprKind::Convert(operand) => self.effect(operand),
+            ExprKind::Convert(operand) => self.lower_effect(operand),
             ExprKind::Call(_) => {
                 self.value(id);
                 if let Some(class) = types::class(&self.unit.types, expr.ty) {
@@ -107,17 +107,17 @@ impl Lowering<'_> {
                     (self.builder.block(), self.builder.block(), self.builder.block());
                 self.branch(condition, Sense::JumpIfFalse, then, otherwise);
                 self.builder.open(then);
-                self.effect(a);
+                self.lower_effect(a);
                 self.cost(cost_table::BRANCH);
                 self.builder.jump(end);
                 self.builder.open(otherwise);
-                self.effect(b);
+                self.lower_effect(b);
                 self.builder.open(end);
             }
             ExprKind::Statements(ref statements, value) => {
                 self.statements(statements);
                 if let Some(value) = value {
-                    self.effect(value);
+                    self.lower_effect(value);
                 }
             }
             _ => {
@@ -143,7 +143,7 @@ impl Lowering<'_> {
         if let Storage::Value(dst) = storage {
             self.value_in(value, Some(dst));
             self.charge_assignment(place, value);
-            self.written(dst);
+            self.record_write(dst);
             return self.place_in(dst.into(), into);
         }
         let held = self.hold_storage(storage);
@@ -209,7 +209,7 @@ impl Lowering<'_> {
         let op = self.binary_op(update.op, update.computed);
         let same = ty == update.computed;
         let dst = self.destination(class, if same { into } else { None });
-        self.operate(op, dst, old, operand);
+        self.emit_binary(op, dst, old, operand);
         self.convert(dst.into(), update.computed, ty, if same { None } else { into })
     }
 
@@ -269,21 +269,21 @@ impl Lowering<'_> {
             let Some(node) = self.spine.pop() else { break };
             let expr = &self.function.exprs[node];
             let ExprKind::Binary(op, a_expr, b) = expr.kind else { break };
-            let held = self.hold(left);
+            let held = self.hold_operand(left);
             let right = self.value(b);
             self.charge_kept(a_expr, b);
             self.charge_binary(node);
             let a = self.release(held);
             let dst = self.destination(self.class_or_int(expr.ty), if node == id { into } else { None });
             let op = self.binary_op(op, expr.ty);
-            self.operate(op, dst, a, right);
+            self.emit_binary(op, dst, a, right);
             left = dst.into();
         }
         left
     }
 
     /// `dst = a op b`, where the firmware may divide. Quotients of constants have been folded before.
-    fn operate(&mut self, op: BinaryOp, dst: ValueId, a: Operand, b: Operand) {
+    fn emit_binary(&mut self, op: BinaryOp, dst: ValueId, a: Operand, b: Operand) {
         let are_constant = a.as_value().is_none() && b.as_value().is_none();
         let class = self.builder.function.class(dst.into());
         let function = match (op, class, self.unit.divisions) {
@@ -303,7 +303,7 @@ impl Lowering<'_> {
     fn compare(&mut self, op: operators::CompareOp, a: ExprId, b: ExprId, into: Option<ValueId>) -> Operand {
         let is_unsigned = types::is_unsigned(&self.unit.types, self.function.exprs[a].ty);
         let first = self.value(a);
-        let held = self.hold(first);
+        let held = self.hold_operand(first);
         let second = self.value(b);
         self.charge_kept(a, b);
         self.charge_compare(a, b);
@@ -318,7 +318,7 @@ impl Lowering<'_> {
     }
 
     /// The value 0 or 1 of a condition.
-    fn truth(&mut self, id: ExprId, into: Option<ValueId>) -> Operand {
+    fn lower_truth(&mut self, id: ExprId, into: Option<ValueId>) -> Operand {
         let (yes, no, end) = (self.builder.block(), self.builder.block(), self.builder.block());
         let is_and = matches!(self.function.exprs[id].kind, ExprKind::And(..));
         let [by_way, by_jump] = cost_table::TRUTH;
@@ -347,11 +347,11 @@ impl Lowering<'_> {
             let (then, otherwise, end) = (self.builder.block(), self.builder.block(), self.builder.block());
             self.branch(condition, Sense::JumpIfFalse, then, otherwise);
             self.builder.open(then);
-            self.effect(a);
+            self.lower_effect(a);
             self.cost(cost_table::BRANCH);
             self.builder.jump(end);
             self.builder.open(otherwise);
-            self.effect(b);
+            self.lower_effect(b);
             self.builder.open(end);
             return Operand::int(0);
         };

@@ -4,7 +4,7 @@
 //! a condition, the form of a loop, the passing of a call's arguments.
 //!
 //! Everything is evaluated from left to right. A local in a register is read by naming its value, without a copy; if a
-//! later operand of the same expression writes that local, a copy is inserted afterwards ([`Lowering::hold`]).
+//! later operand of the same expression writes that local, a copy is inserted afterwards ([`Lowering::hold_operand`]).
 
 mod calls;
 mod conditions;
@@ -80,7 +80,7 @@ pub fn lower(
         cost_model: CostModel::new(function, timing),
     };
     lowering.cost(cost_table::ENTRY);
-    lowering.enter();
+    lowering.enter_function();
     lowering.statements(&function.body);
     lowering.builder.set_span(function.end);
     lowering.return_zero();
@@ -181,7 +181,7 @@ impl Lowering<'_> {
     }
 
     /// Gives every local its home and receives the arguments.
-    fn enter(&mut self) {
+    fn enter_function(&mut self) {
         let function = self.function;
         for local in function.locals.values() {
             let home = if local.by_pointer {
@@ -242,12 +242,12 @@ impl Lowering<'_> {
     }
 
     /// Records that a local's value is written.
-    fn written(&mut self, value: ValueId) {
+    fn record_write(&mut self, value: ValueId) {
         self.writes[value] += 1;
     }
 
     /// Remembers an operand while others are evaluated.
-    fn hold(&self, operand: Operand) -> HeldOperand {
+    fn hold_operand(&self, operand: Operand) -> HeldOperand {
         let writes = operand.as_value().map_or(0, |value| self.writes[value]);
         HeldOperand { operand, writes, point: self.builder.point() }
     }

@@ -117,7 +117,7 @@ impl Lowering<'_> {
     pub(super) fn hold_storage(&self, storage: Storage) -> (Storage, Option<HeldOperand>) {
         let held = match storage {
             Storage::Memory(address, _) | Storage::Bits(address, _) => match address.base {
-                Base::Value(value) => Some(self.hold(value.into())),
+                Base::Value(value) => Some(self.hold_operand(value.into())),
                 _ => None,
             },
             Storage::Value(_) => None,
@@ -159,7 +159,7 @@ impl Lowering<'_> {
         match storage {
             Storage::Value(dst) => {
                 self.builder.copy(dst, value);
-                self.written(dst);
+                self.record_write(dst);
                 dst.into()
             }
             Storage::Memory(address, width) => {

@@ -16,7 +16,7 @@ impl Lowering<'_> {
     fn statement(&mut self, statement: &Stmt) {
         self.builder.set_span(statement.span);
         match &statement.kind {
-            StmtKind::Expr(expr) => self.effect(*expr),
+            StmtKind::Expr(expr) => self.lower_effect(*expr),
             StmtKind::Block(statements) => self.statements(statements),
             StmtKind::If { condition, then, otherwise } => self.if_statement(*condition, then, otherwise),
             StmtKind::Loop { condition, test, body, step } => {
@@ -136,7 +136,7 @@ impl Lowering<'_> {
         self.builder.open(next);
         if let Some(step) = step {
             self.builder.set_span(self.function.exprs[step].span);
-            self.effect(step);
+            self.lower_effect(step);
             self.cost(cost_table::BRANCH);
         }
         if let Some(bottom) = bottom {
@@ -164,12 +164,12 @@ impl Lowering<'_> {
                 let value = if self.builder.function.class(value) == class {
                     value
                 } else {
-                    self.adapt(value, class)
+                    self.adapt_class(value, class)
                 };
                 self.builder.terminate(Terminator::Return(Some(value)));
             }
             (Some(value), None) => {
-                self.effect(value);
+                self.lower_effect(value);
                 self.charge_return(None);
                 self.builder.terminate(Terminator::Return(None));
             }

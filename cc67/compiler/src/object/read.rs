@@ -159,13 +159,13 @@ impl<'a> ObjectReader<'a> {
                     self.ids[index as usize] = Some(id);
                     if symbol.section == TEXT {
                         let (Some(begin), Some(end)) = (symbols.next(), symbols.next()) else {
-                            return Err(wrong(symbol));
+                            return Err(symbol_error(symbol));
                         };
                         self.ids.resize(self.ids.len() + 2 + begin.aux.len() + end.aux.len(), None);
                         self.boundaries(id, begin, end);
                     }
                 }
-                _ => return Err(wrong(symbol)),
+                _ => return Err(symbol_error(symbol)),
             }
         }
         Ok(())
@@ -176,13 +176,13 @@ impl<'a> ObjectReader<'a> {
         let (size, align) = (aux.size.get(), aux.align.get().max(1));
         let is_function = symbol.section == TEXT;
         if !is_function && (align > MAX_ALIGN || !align.is_power_of_two()) {
-            return Err(wrong(symbol));
+            return Err(symbol_error(symbol));
         }
         let id = SymbolId::new(self.object.symbols.len());
-        let end = symbol.value.checked_add(size).ok_or_else(|| wrong(symbol))?;
+        let end = symbol.value.checked_add(size).ok_or_else(|| symbol_error(symbol))?;
         let definition = match (symbol.section, symbol.aux.is_empty()) {
             (TEXT, _) => {
-                let words = self.words(symbol.value..end).ok_or_else(|| wrong(symbol))?;
+                let words = self.function_words(symbol.value..end).ok_or_else(|| symbol_error(symbol))?;
                 self.functions.push(FunctionSymbols { words, symbol: id, index, end: SourceLine::default() });
                 Definition::None
             }
@@ -192,7 +192,7 @@ impl<'a> ObjectReader<'a> {
             }
             (BSS, _) | (SectionNumber::UNDEFINED, false) => Definition::Tentative,
             (SectionNumber::UNDEFINED, true) => Definition::None,
-            _ => return Err(wrong(symbol)),
+            _ => return Err(symbol_error(symbol)),
         };
         self.object.symbols.push(Symbol {
             name: symbol.name.to_string(),
@@ -239,7 +239,7 @@ impl<'a> ObjectReader<'a> {
     }
 
     /// The words of a function in the unit's text, at addresses of the section.
-    fn words(&self, bytes: Range<u32>) -> Option<Range<u32>> {
+    fn function_words(&self, bytes: Range<u32>) -> Option<Range<u32>> {
         let word = |at: u32| {
             let word = at.is_multiple_of(self.word).then_some(at / self.word)?.checked_sub(self.head)?;
             (word <= self.length()).then_some(word)
@@ -278,12 +278,12 @@ impl<'a> ObjectReader<'a> {
                 exceeded: Vec::new(),
             });
         }
-        relocations.next().map_or(Ok(()), |left| Err(misplaced(".text", left.address)))
+        relocations.next().map_or(Ok(()), |left| Err(misplaced_error(".text", left.address)))
     }
 
     fn relocation(&self, relocation: &coff::Relocation, words: &Range<u32>) -> Result<Relocation, ReadError> {
-        let fail = || misplaced(".text", relocation.address);
-        let symbol = self.referred(relocation.symbol).ok_or_else(fail)?;
+        let fail = || misplaced_error(".text", relocation.address);
+        let symbol = self.referenced_symbol(relocation.symbol).ok_or_else(fail)?;
         let (at, kind) = match relocation.kind {
             ADDRESS => (relocation.address.checked_sub(4).ok_or_else(fail)?, RelocationKind::Address),
             CALL => {
@@ -317,7 +317,7 @@ impl<'a> ObjectReader<'a> {
         })
     }
 
-    fn referred(&self, index: u32) -> Option<SymbolId> {
+    fn referenced_symbol(&self, index: u32) -> Option<SymbolId> {
         self.ids.get(index as usize).copied().flatten()
     }
 
@@ -345,11 +345,11 @@ impl<'a> ObjectReader<'a> {
         for (bytes, symbol) in std::mem::take(&mut self.objects) {
             let first = self.object.data_relocations.len() as u32;
             while let Some(relocation) = relocations.next_if(|next| next.address < bytes.end) {
-                let target = self.referred(relocation.symbol).filter(|_| {
+                let target = self.referenced_symbol(relocation.symbol).filter(|_| {
                     let end = relocation.address.checked_add(4);
                     relocation.address >= bytes.start && end.is_some_and(|end| end <= bytes.end)
                 });
-                let target = target.ok_or_else(|| misplaced(".data", relocation.address))?;
+                let target = target.ok_or_else(|| misplaced_error(".data", relocation.address))?;
                 self.object
                     .data_relocations
                     .push(DataRelocation { offset: relocation.address, symbol: target });
@@ -358,14 +358,14 @@ impl<'a> ObjectReader<'a> {
             let relocations = first..self.object.data_relocations.len() as u32;
             self.object.objects.push(Initialized { symbol, bytes, relocations });
         }
-        relocations.next().map_or(Ok(()), |left| Err(misplaced(".data", left.address)))
+        relocations.next().map_or(Ok(()), |left| Err(misplaced_error(".data", left.address)))
     }
 }
 
-fn wrong(symbol: &coff::Symbol) -> ReadError {
+fn symbol_error(symbol: &coff::Symbol) -> ReadError {
     ReadError::Symbol(symbol.name.to_string())
 }
 
-fn misplaced(section: &'static str, address: u32) -> ReadError {
+fn misplaced_error(section: &'static str, address: u32) -> ReadError {
     ReadError::Relocation { section, address }
 }

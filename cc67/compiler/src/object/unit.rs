@@ -101,7 +101,7 @@ impl<'a> UnitBuilder<'a> {
     }
 
     /// Adds a function of the controller's code.
-    pub(crate) fn words(&mut self, about: FunctionFacts, words: MachineText) {
+    pub(crate) fn add_machine_function(&mut self, about: FunctionFacts, words: MachineText) {
         let MachineText { words, fixups, spans, frame, exceeded } = words;
         let start = words.start;
         let relocations = fixups.into_iter().map(|fixup| Relocation {

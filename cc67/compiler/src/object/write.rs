@@ -28,7 +28,7 @@ use super::{
     whole_lines,
 };
 use crate::bytecode::{WORD, head};
-use crate::c67x::text::half;
+use crate::c67x::text::with_half_constant;
 use crate::relocation::{FixupKind, RelocationKind};
 use crate::typed::{Linkage, SymbolId};
 
@@ -280,8 +280,8 @@ impl<'a> Writer<'a> {
                 continue;
             };
             match kind {
-                FixupKind::Low(offset) => *word = half(*word, offset.cast_unsigned()),
-                FixupKind::High(offset) => *word = half(*word, offset.cast_unsigned() >> 16),
+                FixupKind::Low(offset) => *word = with_half_constant(*word, offset.cast_unsigned()),
+                FixupKind::High(offset) => *word = with_half_constant(*word, offset.cast_unsigned() >> 16),
                 FixupKind::Near => {}
                 FixupKind::Own(offset) => *word = offset.cast_unsigned(),
             }

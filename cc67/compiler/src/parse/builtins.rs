@@ -19,7 +19,7 @@ impl Parser<'_> {
             word::BUILTIN_VA_END | word::VA_END => Self::va_end,
             word::BUILTIN_VA_COPY | word::VA_COPY => Self::va_copy,
             word::BUILTIN_OFFSETOF | word::OFFSETOF => Self::offsetof,
-            word::GENERIC => Self::generic,
+            word::GENERIC => Self::generic_selection,
             _ => return None,
         };
         if !self.is_builtin(token.name) {
@@ -30,7 +30,7 @@ impl Parser<'_> {
             parser.open();
             let kind = parse(parser)?;
             parser.close(TokenKind::RightParen)?;
-            Ok(Expression { kind, span: parser.since(token.span) })
+            Ok(Expression { kind, span: parser.span_since(token.span) })
         }))
     }
 
@@ -85,10 +85,10 @@ impl Parser<'_> {
         Ok(ExpressionKind::Offsetof(Box::new(ty), path))
     }
 
-    fn generic(&mut self) -> ParseResult<ExpressionKind> {
+    fn generic_selection(&mut self) -> ParseResult<ExpressionKind> {
         let value = Box::new(self.assignment()?);
         let mut choices = Vec::new();
-        while self.take(TokenKind::Comma).is_some() {
+        while self.eat(TokenKind::Comma).is_some() {
             let ty = match self.take_word(word::DEFAULT) {
                 Some(_) => None,
                 None => Some(self.type_name()?),

@@ -74,7 +74,7 @@ impl Parser<'_> {
         if self.is_loose_statement() {
             return self.loose_statement();
         }
-        match self.declared(start.span)? {
+        match self.declaration_head(start.span)? {
             DeclarationHead::Names(declaration) => Ok(Some(Item::Declaration(declaration))),
             DeclarationHead::Function(specifiers, declarator) => self
                 .function(specifiers, declarator, start.span)
@@ -85,7 +85,7 @@ impl Parser<'_> {
     /// A declaration among statements.
     pub(super) fn local_declaration(&mut self) -> ParseResult<Statement> {
         let (start, index) = (self.peek(), self.at);
-        match self.declared(start.span)? {
+        match self.declaration_head(start.span)? {
             DeclarationHead::Names(declaration) => {
                 let span = declaration.span;
                 Ok(Statement { kind: StatementKind::Declaration(declaration), span })
@@ -111,7 +111,7 @@ impl Parser<'_> {
         if let Some(open) = self.recovery.open.iter().find(|token| token.kind == TokenKind::LeftBrace) {
             // The function's own tokens do not show what was open before it.
             let end = std::mem::replace(&mut self.at, start);
-            let open = if is_outer { self.unclosed(*open) } else { *open };
+            let open = if is_outer { self.unclosed_brace(*open) } else { *open };
             self.at = end;
             diagnostic = diagnostic.label(open.span, "this `{` is open");
         }
@@ -137,7 +137,7 @@ impl Parser<'_> {
         }
         self.open();
         let condition = self.conditional()?;
-        let message = match self.take(TokenKind::Comma) {
+        let message = match self.eat(TokenKind::Comma) {
             Some(_) if self.kind() == TokenKind::String => {
                 let elements = self.string_literal().elements;
                 Some(elements.into_iter().filter_map(|element| u8::try_from(element).ok()).collect())
@@ -146,7 +146,7 @@ impl Parser<'_> {
             None => None,
         };
         self.close(TokenKind::RightParen)?;
-        let span = self.since(start);
+        let span = self.span_since(start);
         self.semicolon(span)?;
         Ok(StaticAssert { condition, message, span })
     }
@@ -158,7 +158,7 @@ impl Parser<'_> {
     }
 
     /// Reads a declaration, or a function definition up to its body.
-    fn declared(&mut self, start: Span) -> ParseResult<DeclarationHead> {
+    fn declaration_head(&mut self, start: Span) -> ParseResult<DeclarationHead> {
         let mut specifiers = self.specifiers()?;
         if specifiers.ty.is_none() && self.is_unknown_type() {
             self.unknown_type(&mut specifiers);
@@ -175,14 +175,14 @@ impl Parser<'_> {
                     return Ok(DeclarationHead::Function(specifiers, declarator));
                 }
                 self.declare(&specifiers, &declarator);
-                let initializer =
-                    if self.take(TokenKind::Assign).is_some() || self.takes_equality(&declarator) {
-                        Some(self.initializer()?)
-                    } else {
-                        None
-                    };
+                let initializer = if self.eat(TokenKind::Assign).is_some() || self.takes_equality(&declarator)
+                {
+                    Some(self.initializer()?)
+                } else {
+                    None
+                };
                 declarators.push(InitDeclarator { declarator, initializer });
-                if self.take(TokenKind::Comma).is_some() {
+                if self.eat(TokenKind::Comma).is_some() {
                     self.skip_decimals();
                 } else if !self.continues_name() && !self.continues_without_comma() {
                     break;
@@ -192,7 +192,7 @@ impl Parser<'_> {
                 }
             }
         }
-        let span = self.since(start);
+        let span = self.span_since(start);
         // The declaration is kept, even if its end is wrong.
         if self.semicolon(span).is_err() {
             let open = self.recovery.open.len();
@@ -228,7 +228,7 @@ impl Parser<'_> {
 
     /// Reads an `==` in place of the `=` before an initialiser, and reports it.
     fn takes_equality(&mut self, declarator: &Declarator) -> bool {
-        let Some(token) = self.take(TokenKind::Equal) else { return false };
+        let Some(token) = self.eat(TokenKind::Equal) else { return false };
         let name = declarator.name.map_or("it", |(name, _)| self.spelling(name));
         let help = format!("write `=` to give `{name}` its value");
         self.report(Diagnostic::error(token.span, "`==` compares").help(help));
@@ -329,14 +329,14 @@ impl Parser<'_> {
         let result = self.function_body();
         self.scopes.leave();
         let (old_style, body) = result?;
-        Ok(FunctionDefinition { specifiers, declarator, old_style, body, span: self.since(start) })
+        Ok(FunctionDefinition { specifiers, declarator, old_style, body, span: self.span_since(start) })
     }
 
     fn function_body(&mut self) -> ParseResult<(Vec<Declaration>, Statement)> {
         let mut old_style = Vec::new();
         while self.kind() != TokenKind::LeftBrace {
             let start = self.peek().span;
-            match self.declared(start)? {
+            match self.declaration_head(start)? {
                 DeclarationHead::Names(declaration) => old_style.push(declaration),
                 DeclarationHead::Function(_, declarator) => {
                     let message = "expected the body of the function before this one";
@@ -356,7 +356,7 @@ impl Parser<'_> {
             self.recovery.open.clear();
         }
         let kind = StatementKind::Block(statements?);
-        Ok((old_style, Statement { kind, span: self.since(start) }))
+        Ok((old_style, Statement { kind, span: self.span_since(start) }))
     }
 
     fn declare_parameters(&mut self, declarator: &Declarator) {

@@ -27,7 +27,7 @@ impl Parser<'_> {
     pub(super) fn declarator(&mut self, naming: NameRule) -> ParseResult<Declarator> {
         let start = self.peek().span;
         let pointers = self.pointers()?;
-        let (name, mut derived) = self.direct(naming)?;
+        let (name, mut derived) = self.direct_declarator(naming)?;
         loop {
             match self.kind() {
                 TokenKind::LeftBracket => derived.push(self.array()?),
@@ -45,7 +45,7 @@ impl Parser<'_> {
         let span = if name.is_none() && derived.is_empty() {
             Span { hi: start.lo, ..start }
         } else {
-            self.since(start)
+            self.span_since(start)
         };
         let alignments = self.labels_and_attributes()?;
         Ok(Declarator { name, derived, alignments, span })
@@ -59,13 +59,13 @@ impl Parser<'_> {
             self.unknown_type(&mut specifiers);
         }
         let declarator = self.declarator(NameRule::Forbidden)?;
-        Ok(TypeName { specifiers, declarator, span: self.since(start) })
+        Ok(TypeName { specifiers, declarator, span: self.span_since(start) })
     }
 
     #[inline(never)]
     fn pointers(&mut self) -> ParseResult<Vec<Qualifiers>> {
         let mut pointers = Vec::new();
-        while self.take(TokenKind::Star).is_some() {
+        while self.eat(TokenKind::Star).is_some() {
             let mut qualifiers = Qualifiers::default();
             while self.qualifier(&mut qualifiers)? {}
             pointers.push(qualifiers);
@@ -74,7 +74,7 @@ impl Parser<'_> {
     }
 
     /// The name, or a declarator in parentheses.
-    fn direct(&mut self, naming: NameRule) -> ParseResult<DirectDeclarator> {
+    fn direct_declarator(&mut self, naming: NameRule) -> ParseResult<DirectDeclarator> {
         if naming != NameRule::Forbidden && self.is_identifier_at(0) {
             let token = self.next();
             return Ok((Some((token.name, token.span)), Vec::new()));
@@ -175,7 +175,7 @@ impl Parser<'_> {
             }
             let token = self.next();
             names.push((token.name, token.span));
-            if self.take(TokenKind::Comma).is_none() {
+            if self.eat(TokenKind::Comma).is_none() {
                 return Ok(Parameters::Names(names));
             }
         }
@@ -184,11 +184,11 @@ impl Parser<'_> {
     fn prototype(&mut self) -> ParseResult<Parameters> {
         let mut parameters = Vec::with_capacity(1);
         loop {
-            if self.take(TokenKind::Ellipsis).is_some() {
+            if self.eat(TokenKind::Ellipsis).is_some() {
                 return Ok(Parameters::Prototype { parameters, is_variadic: true });
             }
             parameters.push(self.parameter()?);
-            if self.take(TokenKind::Comma).is_none() {
+            if self.eat(TokenKind::Comma).is_none() {
                 return Ok(Parameters::Prototype { parameters, is_variadic: false });
             }
         }
@@ -207,7 +207,7 @@ impl Parser<'_> {
         }
         self.reference(&mut specifiers);
         let declarator = self.declarator(NameRule::Optional)?;
-        Ok(Parameter { specifiers, declarator, span: self.since(start.span) })
+        Ok(Parameter { specifiers, declarator, span: self.span_since(start.span) })
     }
 
     /// Skips the `&` of a C++ reference; the declared type has already been reported.

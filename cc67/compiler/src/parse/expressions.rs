@@ -39,7 +39,7 @@ impl Parser<'_> {
             }
             left = match operator {
                 Infix::Conditional => self.branches(left)?,
-                Infix::Assign | Infix::AssignWith(_) => self.assigned(operator, left)?,
+                Infix::Assign | Infix::AssignWith(_) => self.assignment_rest(operator, left)?,
                 Infix::Comma | Infix::Binary(_) => {
                     let right = self.right_operand(binding)?;
                     combine(operator, left, right)
@@ -62,7 +62,7 @@ impl Parser<'_> {
 
     /// The right side of an assignment, which is right-associative.
     #[inline(never)]
-    fn assigned(&mut self, operator: Infix, left: Expression) -> ParseResult<Expression> {
+    fn assignment_rest(&mut self, operator: Infix, left: Expression) -> ParseResult<Expression> {
         let right = self.nested(Self::assignment)?;
         Ok(combine(operator, left, right))
     }

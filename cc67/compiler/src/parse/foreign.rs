@@ -104,7 +104,7 @@ impl Parser<'_> {
         while !self.peek().flags.has(Flags::LINE_START) && self.kind() != TokenKind::End {
             self.at += 1;
         }
-        let span = self.since(start);
+        let span = self.span_since(start);
         self.report_foreign(language, Diagnostic::error(span, message).help(help));
         let error = Expression { kind: ExpressionKind::Error, span };
         Some(Ok(Statement { kind: StatementKind::Expression(error), span }))
@@ -141,7 +141,7 @@ impl Parser<'_> {
         if self.kind() == TokenKind::LeftBrace {
             self.skip_braces();
         }
-        self.take(TokenKind::Semicolon);
+        self.eat(TokenKind::Semicolon);
         true
     }
 
@@ -162,7 +162,7 @@ impl Parser<'_> {
             }
             self.at += 1;
         }
-        let span = self.since(start);
+        let span = self.span_since(start);
         let advice = foreign_words::word("new").map_or("", |word| word.advice);
         self.report_foreign(Language::Cpp, Diagnostic::error(span, "`new` belongs to C++").help(advice));
         Some(Expression { kind: ExpressionKind::Error, span })

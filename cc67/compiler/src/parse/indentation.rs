@@ -10,7 +10,7 @@ use super::Parser;
 
 impl Parser<'_> {
     /// The brace that was probably left open between `outer`, an open one, and the next token.
-    pub(super) fn unclosed(&self, outer: Token) -> Token {
+    pub(super) fn unclosed_brace(&self, outer: Token) -> Token {
         if outer.kind != TokenKind::LeftBrace {
             return outer;
         }

@@ -13,7 +13,7 @@ impl Parser<'_> {
         }
         let start = self.peek().span;
         let items = self.nested(Self::initializer_list)?;
-        Ok(Initializer::List { items, span: self.since(start) })
+        Ok(Initializer::List { items, span: self.span_since(start) })
     }
 
     /// `{ … }`
@@ -23,7 +23,7 @@ impl Parser<'_> {
         while self.kind() != TokenKind::RightBrace {
             let designators = self.designators()?;
             items.push(InitializerItem { designators, initializer: self.initializer()? });
-            if self.take(TokenKind::Comma).is_none() {
+            if self.eat(TokenKind::Comma).is_none() {
                 break;
             }
         }
@@ -42,7 +42,7 @@ impl Parser<'_> {
         }
         self.designator_steps(&mut designators)?;
         let ends_in_index = matches!(designators.last(), Some(Designator::Index(_) | Designator::Range(..)));
-        if !designators.is_empty() && self.take(TokenKind::Assign).is_none() && !ends_in_index {
+        if !designators.is_empty() && self.eat(TokenKind::Assign).is_none() && !ends_in_index {
             return self.fail_expected("`=` after the designator");
         }
         Ok(designators)
@@ -63,7 +63,7 @@ impl Parser<'_> {
                 TokenKind::LeftBracket => {
                     self.open();
                     let first = self.conditional()?;
-                    let last = match self.take(TokenKind::Ellipsis) {
+                    let last = match self.eat(TokenKind::Ellipsis) {
                         Some(_) => Some(self.conditional()?),
                         None => None,
                     };

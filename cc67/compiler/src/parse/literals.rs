@@ -71,14 +71,14 @@ impl Parser<'_> {
     pub(super) fn string(&mut self) -> Expression {
         let start = self.peek().span;
         let literal = self.string_literal();
-        let span = self.since(start);
+        let span = self.span_since(start);
         Expression { kind: ExpressionKind::String(literal), span }
     }
 
     /// Reads adjacent strings as one.
     pub(super) fn string_literal(&mut self) -> StringLiteral {
         let mut parts = Vec::new();
-        while let Some(token) = self.take(TokenKind::String) {
+        while let Some(token) = self.eat(TokenKind::String) {
             if !token.flags.has(Flags::BROKEN) {
                 parts.push((token, self.token_text(token)));
             }

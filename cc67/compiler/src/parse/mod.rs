@@ -176,7 +176,7 @@ impl Parser<'_> {
     }
 
     /// Takes the next token if it is of this kind.
-    fn take(&mut self, kind: TokenKind) -> Option<Token> {
+    fn eat(&mut self, kind: TokenKind) -> Option<Token> {
         (self.kind() == kind).then(|| self.next())
     }
 
@@ -191,7 +191,7 @@ impl Parser<'_> {
     }
 
     /// From `start` to the token read last.
-    fn since(&self, start: Span) -> Span {
+    fn span_since(&self, start: Span) -> Span {
         start.to(self.last_span())
     }
 
@@ -215,15 +215,15 @@ impl Parser<'_> {
 
     #[inline(never)]
     fn too_deep(&mut self) -> ErrorReported {
-        self.exceed(format!("nested deeper than {NESTING} levels"))
+        self.limit_exceeded(format!("nested deeper than {NESTING} levels"))
     }
 
     #[inline(never)]
     fn too_long(&mut self) -> ErrorReported {
-        self.exceed(format!("more than {CHAIN} operators in a row"))
+        self.limit_exceeded(format!("more than {CHAIN} operators in a row"))
     }
 
-    fn exceed(&mut self, message: String) -> ErrorReported {
+    fn limit_exceeded(&mut self, message: String) -> ErrorReported {
         let span = self.peek().span;
         self.report(Diagnostic::error(span, message).note("the rest of the program was not read"));
         self.stop()

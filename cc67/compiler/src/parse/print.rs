@@ -286,8 +286,8 @@ impl Printer<'_> {
                 }
                 self.close();
             }
-            StatementKind::While { condition, body } => self.governed("while", condition, body),
-            StatementKind::Switch { value, body } => self.governed("switch", value, body),
+            StatementKind::While { condition, body } => self.print_controlled("while", condition, body),
+            StatementKind::Switch { value, body } => self.print_controlled("switch", value, body),
             StatementKind::DoWhile { body, condition } => {
                 self.open("do");
                 self.statement(body);
@@ -316,8 +316,8 @@ impl Printer<'_> {
                 self.statement(body);
                 self.close();
             }
-            StatementKind::Default(body) => self.labelled("default", None, body),
-            StatementKind::Label { name, body, .. } => self.labelled("label", Some(*name), body),
+            StatementKind::Default(body) => self.print_labelled("default", None, body),
+            StatementKind::Label { name, body, .. } => self.print_labelled("label", Some(*name), body),
             StatementKind::Goto(name, _) => {
                 self.open("goto");
                 self.name(*name);
@@ -342,14 +342,14 @@ impl Printer<'_> {
         self.close();
     }
 
-    fn governed(&mut self, head: &str, condition: &Expression, body: &Statement) {
+    fn print_controlled(&mut self, head: &str, condition: &Expression, body: &Statement) {
         self.open(head);
         self.expression(condition);
         self.statement(body);
         self.close();
     }
 
-    fn labelled(&mut self, head: &str, name: Option<Name>, body: &Statement) {
+    fn print_labelled(&mut self, head: &str, name: Option<Name>, body: &Statement) {
         self.open(head);
         if let Some(name) = name {
             self.name(name);
@@ -411,12 +411,12 @@ impl Printer<'_> {
                 self.close();
             }
             ExpressionKind::Error => self.word("error"),
-            typed => self.typed(typed),
+            typed => self.print_typed_expression(typed),
         }
     }
 
     /// Expressions with a type in them.
-    fn typed(&mut self, kind: &ExpressionKind) {
+    fn print_typed_expression(&mut self, kind: &ExpressionKind) {
         match kind {
             ExpressionKind::Cast(ty, operand) => {
                 self.with_type("cast", ty);

@@ -28,7 +28,7 @@ impl Parser<'_> {
             return self.fail_expected("a tag or `{`");
         };
         alignments.extend(self.attributes()?);
-        Ok(RecordSpecifier { kind, tag, members, alignments, span: self.since(keyword.span) })
+        Ok(RecordSpecifier { kind, tag, members, alignments, span: self.span_since(keyword.span) })
     }
 
     /// `enum tag { … }`, at the keyword.
@@ -44,7 +44,7 @@ impl Parser<'_> {
             return self.fail_expected("a tag or `{`");
         };
         self.attributes()?;
-        Ok(EnumSpecifier { tag, enumerators, span: self.since(keyword.span) })
+        Ok(EnumSpecifier { tag, enumerators, span: self.span_since(keyword.span) })
     }
 
     fn tag(&mut self, keyword: &'static str) -> Option<(Name, Span)> {
@@ -57,7 +57,7 @@ impl Parser<'_> {
         self.open();
         let mut members = Vec::new();
         while !matches!(self.kind(), TokenKind::RightBrace | TokenKind::End) {
-            if self.take(TokenKind::Semicolon).is_some() {
+            if self.eat(TokenKind::Semicolon).is_some() {
                 continue;
             }
             let (start, open) = (self.at, self.recovery.open.len());
@@ -92,12 +92,12 @@ impl Parser<'_> {
         if !(is_alone && self.kind() == TokenKind::Semicolon) {
             loop {
                 members.push(self.member()?);
-                if self.take(TokenKind::Comma).is_none() {
+                if self.eat(TokenKind::Comma).is_none() {
                     break;
                 }
             }
         }
-        let span = self.since(start);
+        let span = self.span_since(start);
         self.semicolon(span)?;
         Ok(Some(MemberDeclaration { specifiers, members, span }))
     }
@@ -105,7 +105,7 @@ impl Parser<'_> {
     fn member(&mut self) -> ParseResult<MemberDeclarator> {
         let declarator =
             if self.kind() == TokenKind::Colon { None } else { Some(self.declarator(NameRule::Required)?) };
-        let width = match self.take(TokenKind::Colon) {
+        let width = match self.eat(TokenKind::Colon) {
             Some(_) => Some(self.conditional()?),
             None => None,
         };
@@ -122,13 +122,13 @@ impl Parser<'_> {
             }
             let token = self.next();
             self.attributes()?;
-            let value = match self.take(TokenKind::Assign) {
+            let value = match self.eat(TokenKind::Assign) {
                 Some(_) => Some(self.conditional()?),
                 None => None,
             };
             self.scopes.declare(token.name, NameMeaning::Ordinary);
             enumerators.push(Enumerator { name: token.name, span: token.span, value });
-            if self.take(TokenKind::Comma).is_none() {
+            if self.eat(TokenKind::Comma).is_none() {
                 break;
             }
         }

@@ -85,7 +85,7 @@ impl Parser<'_> {
 
     /// Takes a token of this kind; `what` describes the position where it is expected.
     pub(super) fn expect(&mut self, kind: TokenKind, what: &str) -> ParseResult<Token> {
-        match self.take(kind) {
+        match self.eat(kind) {
             Some(token) => Ok(token),
             None => {
                 let text = kind.punctuator().unwrap_or("name");
@@ -96,7 +96,7 @@ impl Parser<'_> {
 
     /// Takes the bracket that closes the last open one.
     pub(super) fn close(&mut self, kind: TokenKind) -> ParseResult<Token> {
-        if let Some(token) = self.take(kind) {
+        if let Some(token) = self.eat(kind) {
             self.recovery.open.pop();
             return Ok(token);
         }
@@ -184,7 +184,7 @@ impl Parser<'_> {
 
     /// Takes the `;` after `what`; if it is missing, that is reported at its position.
     pub(super) fn semicolon(&mut self, what: Span) -> ParseResult<()> {
-        if self.take(TokenKind::Semicolon).is_some() {
+        if self.eat(TokenKind::Semicolon).is_some() {
             return Ok(());
         }
         let found = self.peek();
@@ -250,7 +250,7 @@ impl Parser<'_> {
         let innermost = self.recovery.open.pop().filter(|token| token.kind != TokenKind::LeftBrace);
         let diagnostic = match innermost.or(brace) {
             Some(opener) => {
-                let opener = self.unclosed(opener);
+                let opener = self.unclosed_brace(opener);
                 let text = opener.kind.punctuator().unwrap_or_default();
                 Diagnostic::error(opener.span, format!("`{text}` is never closed"))
                     .at("opened here")

@@ -77,10 +77,10 @@ impl Parser<'_> {
             }
         }
         if words != ArithmeticWords::default() {
-            specifiers.ty = Some(TypeSpecifier::Basic(self.basic_type(words, self.since(start))?));
+            specifiers.ty = Some(TypeSpecifier::Basic(self.basic_type(words, self.span_since(start))?));
         }
         if self.at > first {
-            specifiers.span = self.since(start);
+            specifiers.span = self.span_since(start);
         }
         Ok(specifiers)
     }

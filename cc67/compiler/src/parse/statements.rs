@@ -47,7 +47,7 @@ impl Parser<'_> {
                 {
                     self.at += 1;
                 }
-                let span = if self.recovery.is_unwinding { start } else { self.since(start) };
+                let span = if self.recovery.is_unwinding { start } else { self.span_since(start) };
                 let error = Expression { kind: ExpressionKind::Error, span };
                 Statement { kind: StatementKind::Expression(error), span }
             }
@@ -113,7 +113,7 @@ impl Parser<'_> {
             word::DEFAULT => {
                 self.at += 1;
                 self.colon("after `default`")?;
-                StatementKind::Default(self.labelled()?)
+                StatementKind::Default(self.labelled_statement()?)
             }
             word::GOTO | word::BREAK | word::CONTINUE | word::RETURN => return self.jump(start),
             word::ELSE => {
@@ -145,7 +145,7 @@ impl Parser<'_> {
     }
 
     fn finish(&self, kind: StatementKind, start: Span) -> Statement {
-        Statement { kind, span: self.since(start) }
+        Statement { kind, span: self.span_since(start) }
     }
 
     fn expression_statement(&mut self, start: Span) -> ParseResult<Statement> {
@@ -185,7 +185,7 @@ impl Parser<'_> {
             }
             Err(ErrorReported) => {
                 self.skip_to_close(open);
-                Ok(Expression { kind: ExpressionKind::Error, span: self.since(start.span) })
+                Ok(Expression { kind: ExpressionKind::Error, span: self.span_since(start.span) })
             }
         }
     }
@@ -205,8 +205,8 @@ impl Parser<'_> {
         let help = format!("the condition needs parentheses: `{keyword} (…)`");
         self.report(Diagnostic::error(start.span, message).help(help));
         self.expression()?;
-        self.take(TokenKind::Colon);
-        Ok(Expression { kind: ExpressionKind::Error, span: self.since(start.span) })
+        self.eat(TokenKind::Colon);
+        Ok(Expression { kind: ExpressionKind::Error, span: self.span_since(start.span) })
     }
 
     fn if_(&mut self) -> ParseResult<StatementKind> {
@@ -262,7 +262,7 @@ impl Parser<'_> {
             return self.fail_expected("`while` after the body of `do`");
         }
         let condition = self.condition("while")?;
-        let span = self.since(start);
+        let span = self.span_since(start);
         self.semicolon(span)?;
         Ok(Statement { kind: StatementKind::DoWhile { body, condition }, span })
     }
@@ -283,7 +283,7 @@ impl Parser<'_> {
             }
             Err(ErrorReported) => {
                 self.skip_to_close(open);
-                let span = self.since(start);
+                let span = self.span_since(start);
                 let init = Box::new(Statement { kind: StatementKind::Empty, span });
                 Ok((init, Some(Expression { kind: ExpressionKind::Error, span }), None))
             }
@@ -320,7 +320,7 @@ impl Parser<'_> {
     }
 
     fn for_semicolon(&mut self, what: &str) -> ParseResult<()> {
-        if self.take(TokenKind::Semicolon).is_some() {
+        if self.eat(TokenKind::Semicolon).is_some() {
             return Ok(());
         }
         let found = self.peek();
@@ -341,17 +341,17 @@ impl Parser<'_> {
     fn case(&mut self) -> ParseResult<StatementKind> {
         self.at += 1;
         let first = self.conditional()?;
-        let last = match self.take(TokenKind::Ellipsis) {
+        let last = match self.eat(TokenKind::Ellipsis) {
             Some(_) => Some(self.conditional()?),
             None => None,
         };
         self.colon("after the value of `case`")?;
-        Ok(StatementKind::Case { first, last, body: self.labelled()? })
+        Ok(StatementKind::Case { first, last, body: self.labelled_statement()? })
     }
 
     /// Takes `:`; a `;` in its place is accepted after an error.
     fn colon(&mut self, what: &str) -> ParseResult<()> {
-        if self.take(TokenKind::Colon).is_some() {
+        if self.eat(TokenKind::Colon).is_some() {
             return Ok(());
         }
         let found = self.peek();
@@ -360,7 +360,7 @@ impl Parser<'_> {
         {
             let diagnostic = Diagnostic::error(self.end_of_last(), format!("expected `:` {what}"));
             self.report(diagnostic);
-            self.take(TokenKind::Semicolon);
+            self.eat(TokenKind::Semicolon);
             return Ok(());
         }
         self.fail_expected(&format!("`:` {what}"))
@@ -371,12 +371,12 @@ impl Parser<'_> {
         self.at += 1;
         self.attributes()?;
         let (name, name_span) = (token.name, token.span);
-        let body = self.labelled()?;
+        let body = self.labelled_statement()?;
         Ok(self.finish(StatementKind::Label { name, name_span, body }, start))
     }
 
     /// Parses the statement after a label, which may be missing at the end of a block.
-    fn labelled(&mut self) -> ParseResult<Box<Statement>> {
+    fn labelled_statement(&mut self) -> ParseResult<Box<Statement>> {
         if self.kind() == TokenKind::RightBrace {
             return Ok(Box::new(Statement { kind: StatementKind::Empty, span: self.end_of_last() }));
         }
@@ -393,7 +393,7 @@ impl Parser<'_> {
                 let label = self.next();
                 StatementKind::Goto(label.name, label.span)
             }
-            word::GOTO if self.take(TokenKind::Star).is_some() => {
+            word::GOTO if self.eat(TokenKind::Star).is_some() => {
                 StatementKind::GotoAddress(self.expression()?)
             }
             word::GOTO => return self.fail_expected("a label"),
@@ -402,7 +402,7 @@ impl Parser<'_> {
             }
             _ => StatementKind::Return(Some(self.expression()?)),
         };
-        let span = self.since(start);
+        let span = self.span_since(start);
         self.semicolon(span)?;
         Ok(self.finish(kind, start))
     }

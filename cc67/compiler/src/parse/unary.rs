@@ -39,7 +39,7 @@ impl Parser<'_> {
         let open = self.open().span;
         let mut inner = self.nested(Self::expression)?;
         self.close(TokenKind::RightParen)?;
-        inner.span = self.since(open);
+        inner.span = self.span_since(open);
         Ok(inner)
     }
 
@@ -97,7 +97,7 @@ impl Parser<'_> {
         self.close(TokenKind::RightParen)?;
         if self.kind() == TokenKind::LeftBrace {
             let items = self.nested(Self::initializer_list)?;
-            let span = self.since(open.span);
+            let span = self.span_since(open.span);
             let literal = Expression { kind: ExpressionKind::CompoundLiteral(ty, items), span };
             return self.postfix(literal);
         }
@@ -115,17 +115,17 @@ impl Parser<'_> {
             self.close(TokenKind::RightParen)?;
             if self.kind() == TokenKind::LeftBrace {
                 let items = self.nested(Self::initializer_list)?;
-                let span = self.since(open.span);
+                let span = self.span_since(open.span);
                 let literal = Expression { kind: ExpressionKind::CompoundLiteral(ty, items), span };
                 let operand = Box::new(self.postfix(literal)?);
-                let span = self.since(token.span);
+                let span = self.span_since(token.span);
                 return Ok(Expression { kind: ExpressionKind::SizeofExpression(operand), span });
             }
-            let span = self.since(token.span);
+            let span = self.span_since(token.span);
             return Ok(Expression { kind: ExpressionKind::SizeofType(ty), span });
         }
         let operand = Box::new(self.nested(Self::unary)?);
-        let span = self.since(token.span);
+        let span = self.span_since(token.span);
         Ok(Expression { kind: ExpressionKind::SizeofExpression(operand), span })
     }
 
@@ -135,13 +135,13 @@ impl Parser<'_> {
         let token = self.next();
         if self.kind() != TokenKind::LeftParen || !self.is_type_at(1) {
             let operand = Box::new(self.nested(Self::unary)?);
-            let span = self.since(token.span);
+            let span = self.span_since(token.span);
             return Ok(Expression { kind: ExpressionKind::AlignofExpression(operand), span });
         }
         self.open();
         let ty = Box::new(self.type_name()?);
         self.close(TokenKind::RightParen)?;
-        Ok(Expression { kind: ExpressionKind::AlignofType(ty), span: self.since(token.span) })
+        Ok(Expression { kind: ExpressionKind::AlignofType(ty), span: self.span_since(token.span) })
     }
 
     /// Parses the postfix operators after an operand.
@@ -180,7 +180,7 @@ impl Parser<'_> {
                 }
                 _ => return Ok(operand),
             };
-            operand = Expression { kind, span: self.since(start) };
+            operand = Expression { kind, span: self.span_since(start) };
         }
     }
 
@@ -191,7 +191,7 @@ impl Parser<'_> {
         if self.kind() != TokenKind::RightParen {
             loop {
                 arguments.push(self.assignment()?);
-                if self.take(TokenKind::Comma).is_none() && !self.lacks_comma() {
+                if self.eat(TokenKind::Comma).is_none() && !self.lacks_comma() {
                     break;
                 }
             }
@@ -271,7 +271,10 @@ impl Parser<'_> {
         let open = self.open();
         let statements = self.nested(Self::block)?;
         self.close(TokenKind::RightParen)?;
-        Ok(Expression { kind: ExpressionKind::StatementExpression(statements), span: self.since(open.span) })
+        Ok(Expression {
+            kind: ExpressionKind::StatementExpression(statements),
+            span: self.span_since(open.span),
+        })
     }
 }
 

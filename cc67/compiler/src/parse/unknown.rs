@@ -74,8 +74,11 @@ impl Parser<'_> {
         let token = self.next();
         self.report_unknown_type(token.name, token.span);
         specifiers.ty = Some(Self::missing_type(token.span));
-        specifiers.span =
-            self.since(if specifiers.span.lo == specifiers.span.hi { token.span } else { specifiers.span });
+        specifiers.span = self.span_since(if specifiers.span.lo == specifiers.span.hi {
+            token.span
+        } else {
+            specifiers.span
+        });
     }
 
     fn report_unknown_type(&mut self, name: Name, span: Span) {

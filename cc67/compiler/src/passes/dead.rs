@@ -71,7 +71,7 @@ impl Remover {
         let mut insts = std::mem::take(&mut function.blocks[id].insts);
         let mut kept = insts.len();
         for index in (0..insts.len()).rev() {
-            if self.keeps(function, &mut insts[index], leaves) {
+            if self.must_keep(function, &mut insts[index], leaves) {
                 kept -= 1;
                 insts.swap(kept, index);
             }
@@ -81,7 +81,7 @@ impl Remover {
     }
 
     /// Reports whether an instruction must stay; the result of a call that must may still be dropped.
-    fn keeps(&mut self, function: &Function, inst: &mut Inst, leaves: bool) -> bool {
+    fn must_keep(&mut self, function: &Function, inst: &mut Inst, leaves: bool) -> bool {
         if let Some(dst) = inst.kind.dst() {
             if self.is_dead(dst, leaves) {
                 if !inst.kind.has_effect(function.values[dst]) {

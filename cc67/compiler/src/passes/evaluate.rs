@@ -23,7 +23,7 @@ const LARGEST: usize = 400;
 pub fn run(function: &mut Function) -> bool {
     let mut is_changed = false;
     let mut budget = MOST_OF_ALL;
-    while budget > 0 && function.layout.len() <= LARGEST && once(function, &mut budget) {
+    while budget > 0 && function.layout.len() <= LARGEST && replace_first_loop(function, &mut budget) {
         is_changed = true;
         super::jumps::run(function);
         super::fold::run(function);
@@ -33,9 +33,9 @@ pub fn run(function: &mut Function) -> bool {
 }
 
 /// Replaces the first loop that can be, the largest first.
-fn once(function: &mut Function, budget: &mut u32) -> bool {
+fn replace_first_loop(function: &mut Function, budget: &mut u32) -> bool {
     let places = loops::places(function);
-    let mut found = loops::find(function, &places);
+    let mut found = loops::find_ranges(function, &places);
     found.sort_by_key(|range| std::cmp::Reverse(range.last - range.first));
     for range in found {
         let Some(preheader) = loops::preheader(function, &places, range) else { continue };
@@ -111,16 +111,16 @@ impl Machine<'_> {
 
     fn inst(&mut self, kind: &InstKind) -> Option<()> {
         let (dst, simplified) = match *kind {
-            InstKind::Copy { dst, src } => (dst, Simplification::Operand(self.known(src)?)),
-            InstKind::Unary { op, dst, src } => (dst, strength::unary(op, self.known(src)?)),
+            InstKind::Copy { dst, src } => (dst, Simplification::Operand(self.constant_of(src)?)),
+            InstKind::Unary { op, dst, src } => (dst, strength::unary(op, self.constant_of(src)?)),
             InstKind::Binary { op, dst, a, b } => {
                 let class = self.function.values[dst];
-                (dst, strength::binary(op, self.known(a)?, self.known(b)?, class))
+                (dst, strength::binary(op, self.constant_of(a)?, self.constant_of(b)?, class))
             }
             InstKind::Compare { op, dst, a, b } => {
-                (dst, strength::compare(op, self.known(a)?, self.known(b)?))
+                (dst, strength::compare(op, self.constant_of(a)?, self.constant_of(b)?))
             }
-            InstKind::Convert { op, dst, src } => (dst, strength::convert(op, self.known(src)?)),
+            InstKind::Convert { op, dst, src } => (dst, strength::convert(op, self.constant_of(src)?)),
             InstKind::Load { .. }
             | InstKind::Store { .. }
             | InstKind::FrameAddress { .. }
@@ -150,11 +150,11 @@ impl Machine<'_> {
     }
 
     fn number(&mut self, operand: Operand) -> Option<i32> {
-        self.known(operand)?.as_int()
+        self.constant_of(operand)?.as_int()
     }
 
     /// The constant that an operand is.
-    fn known(&mut self, operand: Operand) -> Option<Operand> {
+    fn constant_of(&mut self, operand: Operand) -> Option<Operand> {
         let value = match operand {
             Operand::Constant(Constant::Symbol(..)) => return None,
             Operand::Constant(_) => return Some(operand),
@@ -163,13 +163,13 @@ impl Machine<'_> {
         if let Some(known) = self.values.get(&value) {
             return known.map(Operand::from);
         }
-        let first = self.first(value);
+        let first = self.initial_constant(value);
         self.values.insert(value, first);
         first.map(Operand::from)
     }
 
     /// The constant that a value holds at the start of the loop.
-    fn first(&self, value: ValueId) -> Option<Constant> {
+    fn initial_constant(&self, value: ValueId) -> Option<Constant> {
         let mut id = self.preheader;
         for _ in 0..BEFORE {
             let insts = &self.function.blocks[id].insts;

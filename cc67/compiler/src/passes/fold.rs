@@ -83,20 +83,20 @@ impl Folder {
         self.addresses(&mut inst.kind);
         if let Some(dst) = inst.kind.dst() {
             self.writes[dst] += 1;
-            self.learn(dst, &inst.kind);
+            self.record_facts(dst, &inst.kind);
         }
     }
 
     /// The replacement of an operand: the constant or the older value to which it is known to be equal.
     fn resolve(&self, operand: Operand) -> Operand {
-        match operand.as_value().map(|value| self.known(value)) {
+        match operand.as_value().map(|value| self.known_value(value)) {
             Some(KnownValue::Operand(known)) => known,
             _ => operand,
         }
     }
 
     /// The fact known about a value at this point.
-    fn known(&self, value: ValueId) -> KnownValue {
+    fn known_value(&self, value: ValueId) -> KnownValue {
         let fact = self.facts[value];
         let is_current = fact.region == self.region
             && refers_to(fact.known).is_none_or(|of| self.writes[of] == fact.writes);
@@ -104,7 +104,7 @@ impl Folder {
     }
 
     /// Records the facts about the value that an instruction writes.
-    fn learn(&mut self, dst: ValueId, kind: &InstKind) {
+    fn record_facts(&mut self, dst: ValueId, kind: &InstKind) {
         let known = match *kind {
             InstKind::Copy { src, .. } => KnownValue::Operand(src),
             InstKind::FrameAddress { slot, offset, .. } => {
@@ -139,14 +139,14 @@ impl Folder {
         match kind {
             InstKind::Load { address, .. }
             | InstKind::Store { address, .. }
-            | InstKind::ClearMemory { to: address, .. } => *address = self.shortened(*address),
+            | InstKind::ClearMemory { to: address, .. } => *address = self.fold_address(*address),
             InstKind::CopyMemory { to, from, .. } => {
-                *to = self.shortened(*to);
-                *from = self.shortened(*from);
+                *to = self.fold_address(*to);
+                *from = self.fold_address(*from);
             }
             InstKind::Binary { op: BinaryOp::Add, dst, a: Operand::Value(base), b } => {
                 let Some(offset) = b.as_int() else { return };
-                let (dst, short) = (*dst, self.shortened(Address { base: Base::Value(*base), offset }));
+                let (dst, short) = (*dst, self.fold_address(Address { base: Base::Value(*base), offset }));
                 match short.base {
                     Base::Value(base) if short.offset == 0 => {
                         *kind = InstKind::Copy { dst, src: base.into() };
@@ -174,9 +174,9 @@ impl Folder {
         }
     }
 
-    fn shortened(&self, address: Address) -> Address {
+    fn fold_address(&self, address: Address) -> Address {
         match address.base {
-            Base::Value(value) => match self.known(value) {
+            Base::Value(value) => match self.known_value(value) {
                 KnownValue::Address(known) => known.plus(address.offset),
                 KnownValue::Nothing | KnownValue::Operand(_) | KnownValue::IsZero(_) => address,
             },
@@ -212,7 +212,7 @@ impl Folder {
     /// A comparison; `(x == 0) == 0` and `(x == 0) != 0` are reduced to `x`.
     fn compare(&self, op: CompareOp, a: Operand, b: Operand) -> Simplification {
         if let (Operand::Value(value), Some(0)) = (a, b.as_int())
-            && let KnownValue::IsZero(inner) = self.known(value)
+            && let KnownValue::IsZero(inner) = self.known_value(value)
         {
             match op {
                 CompareOp::Equal => {
@@ -240,7 +240,7 @@ impl Folder {
                     return true;
                 }
                 if let Some(value) = condition.as_value()
-                    && let KnownValue::IsZero(inner) = self.known(value)
+                    && let KnownValue::IsZero(inner) = self.known_value(value)
                 {
                     *terminator = Terminator::Branch { condition: inner, then: *otherwise, otherwise: *then };
                 }

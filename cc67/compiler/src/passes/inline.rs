@@ -65,7 +65,7 @@ impl Candidates {
     }
 
     /// Offers an optimised function of the source file `file`.
-    pub fn offer(&mut self, function: &Function, file: u32) {
+    pub fn add(&mut self, function: &Function, file: u32) {
         if size(function) <= self.largest && function.slots.is_empty() {
             self.functions.insert(function.symbol, (file, function.clone()));
         }
@@ -104,11 +104,11 @@ fn size(function: &Function) -> usize {
 /// The functions that are called directly, once for each call.
 fn callees(function: &Function) -> impl Iterator<Item = SymbolId> {
     let insts = function.layout.iter().flat_map(|id| &function.blocks[*id].insts);
-    insts.filter_map(|inst| called(&inst.kind))
+    insts.filter_map(|inst| called_symbol(&inst.kind))
 }
 
 /// The function that an instruction calls by name.
-const fn called(kind: &InstKind) -> Option<SymbolId> {
+const fn called_symbol(kind: &InstKind) -> Option<SymbolId> {
     if let InstKind::Call { callee: Callee::Symbol(symbol), .. } = *kind { Some(symbol) } else { None }
 }
 
@@ -125,7 +125,7 @@ fn replace_calls<'a>(function: &mut Function, find: impl Fn(SymbolId) -> Option<
         layout.push(id);
         let mut block = id;
         for inst in std::mem::take(&mut function.blocks[id].insts) {
-            let callee = called(&inst.kind).and_then(&find);
+            let callee = called_symbol(&inst.kind).and_then(&find);
             let callee = callee.filter(|callee| {
                 inst.kind.signature() == Some(callee.signature) && total + size(callee) <= LARGEST
             });
@@ -198,7 +198,7 @@ impl<'a> Copier<'a> {
     /// Copies the function between `before`, which should end with `call`, and `behind`.
     fn copy(mut self, before: BlockId, call: Inst, behind: BlockId, layout: &mut Vec<BlockId>) {
         let InstKind::Call { arguments, dst, .. } = call.kind else { return };
-        self.note(call.origin, arguments);
+        self.record_inlining(call.origin, arguments);
         for (index, param) in arguments.range().zip(&self.from.params) {
             let src = self.to.arguments[index];
             let kind = InstKind::Copy { dst: self.values[*param], src };
@@ -234,12 +234,12 @@ impl<'a> Copier<'a> {
     }
 
     /// Records for debuggers the inlined call, and the locations of the callee's locals.
-    fn note(&mut self, origin: CodeOrigin, arguments: ArgumentRange) {
+    fn record_inlining(&mut self, origin: CodeOrigin, arguments: ArgumentRange) {
         let variables = self.variables(&self.from.source.variables, arguments);
         let call = InlinedCall { callee: self.from.symbol, origin, variables };
         self.call = self.to.source.inlined.push(call).into();
         for (id, inner) in &self.from.source.inlined {
-            let variables = inner.variables.iter().map(|variable| self.moved(*variable)).collect();
+            let variables = inner.variables.iter().map(|variable| self.copied_variable(*variable)).collect();
             let call = InlinedCall { callee: inner.callee, origin: self.origin(inner.origin), variables };
             self.inner[id] = self.to.source.inlined.push(call).into();
         }
@@ -251,11 +251,11 @@ impl<'a> Copier<'a> {
         let mut variables = Vec::new();
         for variable in of {
             let VariableHome::Value(value, writes) = variable.home else {
-                variables.push(self.moved(*variable));
+                variables.push(self.copied_variable(*variable));
                 continue;
             };
             let Some(index) = self.from.params.iter().position(|param| *param == value) else {
-                variables.push(self.moved(*variable));
+                variables.push(self.copied_variable(*variable));
                 continue;
             };
             // The copy of the argument is one more.
@@ -273,7 +273,7 @@ impl<'a> Copier<'a> {
     }
 
     /// A local of the called function after it was copied.
-    fn moved(&self, variable: SourceVariable) -> SourceVariable {
+    fn copied_variable(&self, variable: SourceVariable) -> SourceVariable {
         let home = match variable.home {
             VariableHome::Value(value, writes) => VariableHome::Value(self.values[value], writes),
             VariableHome::Pointer(value) => VariableHome::Pointer(self.values[value]),

@@ -28,7 +28,7 @@ pub fn run(function: &mut Function) -> bool {
         return false;
     }
     let places = places(function);
-    let mut loops = find(function, &places);
+    let mut loops = find_ranges(function, &places);
     if loops.is_empty() {
         return false;
     }
@@ -38,7 +38,7 @@ pub fn run(function: &mut Function) -> bool {
     let mut is_changed = false;
     for index in 0..loops.len() {
         let range = loops[index];
-        if worker.improve(range) {
+        if worker.optimize_loop(range) {
             is_changed = true;
             loops[index..].iter_mut().for_each(|other| other.make_room(range.first));
         }
@@ -71,7 +71,7 @@ pub(super) fn places(function: &Function) -> SecondaryMap<BlockId, u32> {
 }
 
 /// The ranges from each target of a backward jump to the last such jump.
-pub(super) fn find(function: &Function, places: &SecondaryMap<BlockId, u32>) -> Vec<LoopRange> {
+pub(super) fn find_ranges(function: &Function, places: &SecondaryMap<BlockId, u32>) -> Vec<LoopRange> {
     let mut loops: Vec<LoopRange> = Vec::new();
     for (last, id) in function.layout.iter().enumerate() {
         for target in function.blocks[*id].terminator.targets() {
@@ -135,7 +135,7 @@ impl<'a> Worker<'a> {
     }
 
     /// Works on one loop; returns whether a block was put before it.
-    fn improve(&mut self, range: LoopRange) -> bool {
+    fn optimize_loop(&mut self, range: LoopRange) -> bool {
         if !self.has_one_entry(range) {
             return false;
         }

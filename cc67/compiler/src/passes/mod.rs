@@ -56,7 +56,7 @@ pub const ALL: &[(&str, Pass)] = &[
 fn inline_all(unit: &mut [Function]) {
     let mut candidates = Candidates::default();
     for function in unit {
-        candidates.offer(function, 0);
+        candidates.add(function, 0);
         candidates.run(function, 0);
     }
 }

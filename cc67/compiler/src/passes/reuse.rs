@@ -31,7 +31,7 @@ pub fn run(function: &mut Function) -> bool {
                 inst.kind = InstKind::Copy { dst, src: src.into() };
                 is_changed = true;
             }
-            known.retain(|other| !mentions(other, dst));
+            known.retain(|other| !uses_value(other, dst));
             if let Some(kind) = expression.filter(|kind| !reads(kind, dst)) {
                 if known.len() < REMEMBERED {
                     known.push(kind);
@@ -89,6 +89,6 @@ fn reads(kind: &InstKind, value: ValueId) -> bool {
     is_read
 }
 
-fn mentions(kind: &InstKind, value: ValueId) -> bool {
+fn uses_value(kind: &InstKind, value: ValueId) -> bool {
     kind.dst() == Some(value) || reads(kind, value)
 }

@@ -49,13 +49,15 @@ pub(super) fn binary(op: BinaryOp, a: Operand, b: Operand, class: Class) -> Simp
             | Simplification::Compare(..)) => better,
         },
         (Operand::Value(_), Operand::Constant(_)) => right_constant(op, a, b),
-        (Operand::Value(x), Operand::Value(y)) if x == y && class.is_integer() => same(op, a, class),
+        (Operand::Value(x), Operand::Value(y)) if x == y && class.is_integer() => {
+            simplify_equal_operands(op, a, class)
+        }
         _ => Simplification::No,
     }
 }
 
 /// `a op a`
-fn same(op: BinaryOp, a: Operand, class: Class) -> Simplification {
+fn simplify_equal_operands(op: BinaryOp, a: Operand, class: Class) -> Simplification {
     match op {
         BinaryOp::Subtract | BinaryOp::Xor => Simplification::Operand(class.zero().into()),
         BinaryOp::And | BinaryOp::Or => Simplification::Operand(a),
@@ -251,11 +253,11 @@ fn compare_floats(op: CompareOp, a: f64, b: f64) -> bool {
 
 pub(super) fn convert(op: ConvertOp, src: Operand) -> Simplification {
     let Operand::Constant(constant) = src else { return Simplification::No };
-    Simplification::from(converted(op, constant))
+    Simplification::from(convert_constant(op, constant))
 }
 
 /// The result of converting a constant; `None` for the address of a symbol, and for a NaN.
-fn converted(op: ConvertOp, constant: Constant) -> Option<Constant> {
+fn convert_constant(op: ConvertOp, constant: Constant) -> Option<Constant> {
     let int = || if let Constant::I32(value) = constant { Some(value) } else { None };
     let unsigned = || int().map(i32::cast_unsigned);
     let long = || if let Constant::I64(value) = constant { Some(value) } else { None };

@@ -39,7 +39,7 @@ pub fn run(function: &mut Function) -> bool {
             return is_changed;
         }
         let places = loops::places(function);
-        let mut found = loops::find(function, &places);
+        let mut found = loops::find_ranges(function, &places);
         found.sort_by_key(|range| range.last - range.first);
         let next = found.into_iter().find_map(|range| {
             let header = function.layout[range.first];
@@ -141,7 +141,7 @@ fn trip_count(function: &Function, places: &SecondaryMap<BlockId, u32>, range: L
     let mut value = src.as_int()?;
     for trips in 1..=MAX_TRIP_COUNT {
         value = value.wrapping_add(step);
-        if holds(op, value, limit) != goes_on {
+        if comparison_holds(op, value, limit) != goes_on {
             return Some(trips);
         }
     }
@@ -163,7 +163,7 @@ fn preheader(function: &Function, places: &SecondaryMap<BlockId, u32>, range: Lo
     loops::preheader(function, places, range)
 }
 
-const fn holds(op: CompareOp, a: i32, b: i32) -> bool {
+const fn comparison_holds(op: CompareOp, a: i32, b: i32) -> bool {
     match op {
         CompareOp::Equal => a == b,
         CompareOp::NotEqual => a != b,
@@ -187,7 +187,7 @@ impl<'a> Unroller<'a> {
     fn new(function: &'a mut Function, range: LoopRange) -> Self {
         let mut names = SecondaryMap::new();
         names.resize(function.values.len());
-        let own = own(function);
+        let own = find_sole_blocks(function);
         Self { function, range, names, own }
     }
 
@@ -241,12 +241,12 @@ impl<'a> Unroller<'a> {
                 self.function.blocks[ids[index]] = body;
             }
         }
-        self.enter(header, iterations[0][0]);
+        self.redirect_entries(header, iterations[0][0]);
         self.function.layout.splice(self.range.first..self.range.first, layout);
     }
 
     /// Redirects jumps from outside to the first iteration.
-    fn enter(&mut self, header: BlockId, first: BlockId) {
+    fn redirect_entries(&mut self, header: BlockId, first: BlockId) {
         let before = &self.function.layout[..self.range.first];
         let after = &self.function.layout[self.range.last + 1..];
         for id in before.iter().chain(after) {
@@ -278,7 +278,7 @@ impl<'a> Unroller<'a> {
         if plan.before > 0 {
             let block = Block { insts: before, terminator: Terminator::Jump(id), origin };
             let block = self.function.blocks.push(block);
-            self.enter(id, block);
+            self.redirect_entries(id, block);
             self.function.layout.insert(self.range.first, block);
         }
     }
@@ -305,7 +305,7 @@ impl<'a> Unroller<'a> {
         self.function.values.push(class)
     }
 
-    fn renamed(&self, operand: Operand) -> Operand {
+    fn renamed_operand(&self, operand: Operand) -> Operand {
         match operand {
             Operand::Value(value) => self.names[value].map_or(operand, Operand::Value),
             Operand::Constant(_) => operand,
@@ -313,11 +313,11 @@ impl<'a> Unroller<'a> {
     }
 
     fn rename_reads(&mut self, inst: &mut Inst) {
-        inst.kind.visit_operands(|operand| *operand = self.renamed(*operand));
+        inst.kind.visit_operands(|operand| *operand = self.renamed_operand(*operand));
         if let InstKind::Call { arguments, .. } = &mut inst.kind {
             let start = self.function.arguments.len() as u32;
             for index in arguments.range() {
-                let argument = self.renamed(self.function.arguments[index]);
+                let argument = self.renamed_operand(self.function.arguments[index]);
                 self.function.arguments.push(argument);
             }
             *arguments = ArgumentRange { start, count: arguments.count };
@@ -336,7 +336,7 @@ impl<'a> Unroller<'a> {
             }
         }
         if let Some(operand) = body.terminator.operand_mut() {
-            *operand = self.renamed(*operand);
+            *operand = self.renamed_operand(*operand);
         }
     }
 }
@@ -352,7 +352,7 @@ fn back_to(mut terminator: Terminator, outside: BlockId, back: BlockId) -> Termi
 }
 
 /// For each value, the only block that mentions it, if the block writes it before it reads it.
-fn own(function: &Function) -> SecondaryMap<ValueId, Option<BlockId>> {
+fn find_sole_blocks(function: &Function) -> SecondaryMap<ValueId, Option<BlockId>> {
     let mut own: SecondaryMap<ValueId, Option<BlockId>> = table(function.values.len());
     let mut shared: SecondaryMap<ValueId, bool> = table(function.values.len());
     for param in &function.params {

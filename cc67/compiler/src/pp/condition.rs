@@ -25,7 +25,7 @@ impl ConditionValue {
         Self { bits, is_unsigned: false }
     }
 
-    const fn truth(truth: bool) -> Self {
+    const fn from_bool(truth: bool) -> Self {
         Self::signed(if truth { 1 } else { 0 })
     }
 
@@ -51,7 +51,7 @@ impl Preprocessor<'_> {
             return false;
         }
         let mut parser = Parser { pp: self, tokens: &tokens, at: 0, depth: 0, is_evaluated: true };
-        match parser.whole() {
+        match parser.parse_all() {
             Ok(value) => value.is_true(),
             Err(ErrorReported) => false,
         }
@@ -86,7 +86,7 @@ struct Parser<'a, 'b> {
 }
 
 impl Parser<'_, '_> {
-    fn whole(&mut self) -> EvalResult {
+    fn parse_all(&mut self) -> EvalResult {
         let value = self.conditional()?;
         match self.peek() {
             None => Ok(value),
@@ -117,10 +117,10 @@ impl Parser<'_, '_> {
             return self.fail(Diagnostic::error(span, message));
         }
         let condition = self.binary(0)?;
-        let value = if self.take(TokenKind::Question) {
-            let then = self.when(condition.is_true(), Self::conditional)?;
+        let value = if self.eat(TokenKind::Question) {
+            let then = self.parse_if_needed(condition.is_true(), Self::conditional)?;
             self.expect(TokenKind::Colon)?;
-            let otherwise = self.when(!condition.is_true(), Self::conditional)?;
+            let otherwise = self.parse_if_needed(!condition.is_true(), Self::conditional)?;
             let chosen = if condition.is_true() { then } else { otherwise };
             ConditionValue { is_unsigned: then.is_unsigned || otherwise.is_unsigned, ..chosen }
         } else {
@@ -144,7 +144,7 @@ impl Parser<'_, '_> {
                 meaning,
                 Some(OperatorMeaning::Logical(decides)) if left.is_true() == decides
             );
-            let right = self.when(!is_decided, |parser| parser.binary(binding + 1))?;
+            let right = self.parse_if_needed(!is_decided, |parser| parser.binary(binding + 1))?;
             left = match meaning {
                 Some(meaning) => self.apply(meaning, token.span, left, right)?,
                 None => right,
@@ -165,7 +165,7 @@ impl Parser<'_, '_> {
         let mut value = self.primary()?;
         while let Some(operator) = operators.pop() {
             value = match operator {
-                TokenKind::Not => ConditionValue::truth(!value.is_true()),
+                TokenKind::Not => ConditionValue::from_bool(!value.is_true()),
                 TokenKind::Tilde => ConditionValue { bits: !value.bits, ..value },
                 TokenKind::Minus => ConditionValue { bits: value.bits.wrapping_neg(), ..value },
                 _ => value,
@@ -184,7 +184,7 @@ impl Parser<'_, '_> {
         };
         self.at += 1;
         match token.kind {
-            TokenKind::Identifier if token.name == word::DEFINED => self.defined(token),
+            TokenKind::Identifier if token.name == word::DEFINED => self.parse_defined(token),
             TokenKind::Identifier => Ok(ConditionValue::signed(0)),
             TokenKind::Number => self.number(token),
             TokenKind::Character => {
@@ -210,8 +210,8 @@ impl Parser<'_, '_> {
     }
 
     /// `defined name` or `defined(name)`
-    fn defined(&mut self, operator: Token) -> EvalResult {
-        let has_paren = self.take(TokenKind::LeftParen);
+    fn parse_defined(&mut self, operator: Token) -> EvalResult {
+        let has_paren = self.eat(TokenKind::LeftParen);
         let Some(name) = self.peek().filter(|token| token.kind == TokenKind::Identifier) else {
             return self.fail(Diagnostic::error(operator.span, "expected a name after `defined`"));
         };
@@ -219,7 +219,7 @@ impl Parser<'_, '_> {
         if has_paren {
             self.expect(TokenKind::RightParen)?;
         }
-        Ok(ConditionValue::truth(self.pp.is_defined(name.name)))
+        Ok(ConditionValue::from_bool(self.pp.is_defined(name.name)))
     }
 
     fn number(&mut self, token: Token) -> EvalResult {
@@ -253,12 +253,12 @@ impl Parser<'_, '_> {
         let bits = match meaning {
             OperatorMeaning::Logical(decides) => {
                 let is_decided = left.is_true() == decides || right.is_true() == decides;
-                return Ok(ConditionValue::truth(is_decided == decides));
+                return Ok(ConditionValue::from_bool(is_decided == decides));
             }
             OperatorMeaning::Compare(op) => {
                 let unsigned = a.cast_unsigned().cmp(&b.cast_unsigned());
                 let order = if is_unsigned { unsigned } else { a.cmp(&b) };
-                return Ok(ConditionValue::truth(op.holds(Some(order))));
+                return Ok(ConditionValue::from_bool(op.holds(Some(order))));
             }
             OperatorMeaning::Shift(op) => return Ok(ConditionValue { bits: shift(op, left, b), ..left }),
             OperatorMeaning::Arithmetic(op) | OperatorMeaning::Bitwise(op) => {
@@ -275,7 +275,7 @@ impl Parser<'_, '_> {
     }
 
     /// Parses an operand that is only evaluated under a condition.
-    fn when(&mut self, is_needed: bool, parse: impl Fn(&mut Self) -> EvalResult) -> EvalResult {
+    fn parse_if_needed(&mut self, is_needed: bool, parse: impl Fn(&mut Self) -> EvalResult) -> EvalResult {
         let outer = self.is_evaluated;
         self.is_evaluated &= is_needed;
         let value = parse(self);
@@ -287,14 +287,14 @@ impl Parser<'_, '_> {
         self.tokens.get(self.at).copied()
     }
 
-    fn take(&mut self, kind: TokenKind) -> bool {
+    fn eat(&mut self, kind: TokenKind) -> bool {
         let is_next = self.peek().is_some_and(|token| token.kind == kind);
         self.at += usize::from(is_next);
         is_next
     }
 
     fn expect(&mut self, kind: TokenKind) -> Result<(), ErrorReported> {
-        if self.take(kind) {
+        if self.eat(kind) {
             return Ok(());
         }
         let wanted = kind.punctuator().unwrap_or("an operand");

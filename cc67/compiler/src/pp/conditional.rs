@@ -128,7 +128,7 @@ impl Preprocessor<'_> {
             let Some(hash) = lexer.skip_to_directive(&mut cx) else { return };
             lexer.in_directive = true;
             let name = lexer.directive_name(&mut cx);
-            let span = hash.to(lexer.here());
+            let span = hash.to(lexer.position());
             match name {
                 Some(word::IF | word::IFDEF | word::IFNDEF) => depth += 1,
                 Some(word::ENDIF) if depth > 0 => depth -= 1,

@@ -289,7 +289,7 @@ impl Preprocessor<'_> {
     /// Marks a name inside the expansion of its own macro, which is never expanded, even if it is moved out as an
     /// argument.
     fn mark_active(&self, token: &mut Token) {
-        let definition = self.macros.defined(token.name).and_then(|id| self.macros.get(id));
+        let definition = self.macros.definition(token.name).and_then(|id| self.macros.get(id));
         if definition.is_some_and(|definition| definition.is_active) {
             token.flags = token.flags.with(Flags::NO_EXPAND);
         }

@@ -74,7 +74,7 @@ impl Lexer {
     }
 
     /// Restricts the lexer to a part of the text.
-    pub(super) fn within(self, lo: usize, hi: usize) -> Self {
+    pub(super) fn restrict(self, lo: usize, hi: usize) -> Self {
         Self { at: lo, end: hi, ..self }
     }
 
@@ -89,7 +89,7 @@ impl Lexer {
     }
 
     /// The position of the next byte.
-    pub(super) fn here(&self) -> Span {
+    pub(super) fn position(&self) -> Span {
         self.span_to(self.at, self.at)
     }
 
@@ -106,11 +106,11 @@ impl Lexer {
                 b'a'..=b'z' | b'A'..=b'Z' | b'_' => self.identifier(flags, cx),
                 b'0'..=b'9' => self.number(flags, cx),
                 b'.' if self.byte(self.past_splices(lo + 1)).is_ascii_digit() => self.number(flags, cx),
-                b'"' | b'\'' => self.quoted(lo, flags, cx),
-                b'\n' => return Token::new(TokenKind::End, flags, self.here()),
+                b'"' | b'\'' => self.quoted_token(lo, flags, cx),
+                b'\n' => return Token::new(TokenKind::End, flags, self.position()),
                 _ => match self.punctuator(byte) {
                     Some(kind) => Token::new(kind, flags, self.span_from(lo)),
-                    None => match self.foreign(flags, cx) {
+                    None => match self.foreign_token(flags, cx) {
                         Some(token) => token,
                         None => continue,
                     },
@@ -184,7 +184,7 @@ impl Lexer {
                 flags = flags.with(Flags::SPLICED);
             }
             b'"' | b'\'' if matches!(self.bytes(lo, self.at), b"L" | b"u" | b"U" | b"u8") => {
-                return self.quoted(lo, flags, cx);
+                return self.quoted_token(lo, flags, cx);
             }
             byte if byte >= 0x80 && self.is_foreign_letter() => return self.foreign_name(lo, flags, cx),
             _ => {}

@@ -77,13 +77,13 @@ pub(super) struct Macros {
 
 impl Macros {
     /// The meaning of a name.
-    pub(super) fn standing(&self, name: Name) -> MacroState {
+    pub(super) fn state(&self, name: Name) -> MacroState {
         self.current.get(name).copied().unwrap_or_default()
     }
 
     /// The definition in force for a name.
-    pub(super) fn defined(&self, name: Name) -> Option<MacroId> {
-        if let MacroState::Defined(id) = self.standing(name) { Some(id) } else { None }
+    pub(super) fn definition(&self, name: Name) -> Option<MacroId> {
+        if let MacroState::Defined(id) = self.state(name) { Some(id) } else { None }
     }
 
     /// Notes that no text defines a name.
@@ -98,7 +98,7 @@ impl Macros {
         }
     }
 
-    /// A definition; `None` never happens for an id from [`Self::defined`].
+    /// A definition; `None` never happens for an id from [`Self::definition`].
     pub(super) fn get(&self, id: MacroId) -> Option<&Macro> {
         self.macros.get(id)
     }
@@ -112,7 +112,7 @@ impl Macros {
 
     /// Makes the macro of a name compute its value.
     pub(super) fn set_builtin(&mut self, name: Name, builtin: Builtin) {
-        if let Some(definition) = self.defined(name).and_then(|id| self.macros.get_mut(id)) {
+        if let Some(definition) = self.definition(name).and_then(|id| self.macros.get_mut(id)) {
             definition.builtin = Some(builtin);
         }
     }
@@ -130,7 +130,7 @@ impl Macros {
 
     /// Saves the definition of a name, or the fact that there is none.
     pub(super) fn save(&mut self, name: Name) {
-        self.saved.push((name, self.standing(name)));
+        self.saved.push((name, self.state(name)));
     }
 
     /// Restores the definition that was saved last, if there is one.

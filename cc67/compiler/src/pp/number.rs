@@ -191,12 +191,12 @@ impl Mantissa {
         let rest = self.bits.wrapping_sub(kept.checked_shl(drop).unwrap_or(0));
         let half = 1_u64.checked_shl(drop.wrapping_sub(1)).unwrap_or(0);
         let is_above = drop > 0 && (rest > half || rest == half && (self.is_sticky || kept & 1 == 1));
-        scaled(kept + u64::from(is_above), exponent.saturating_add(i64::from(drop)))
+        scale_by_power_of_two(kept + u64::from(is_above), exponent.saturating_add(i64::from(drop)))
     }
 }
 
 /// `integer * 2^exponent`, which is exact: `integer` has at most 53 bits and the result is a multiple of 2^-1074.
-fn scaled(integer: u64, exponent: i64) -> f64 {
+fn scale_by_power_of_two(integer: u64, exponent: i64) -> f64 {
     let high = u32::try_from(integer >> 32).unwrap_or(0);
     let low = u32::try_from(integer & u64::from(u32::MAX)).unwrap_or(0);
     let integer = f64::from(high) * 4_294_967_296.0 + f64::from(low);

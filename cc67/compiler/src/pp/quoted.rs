@@ -79,7 +79,7 @@ fn decode(text: &[u8], encoding: Encoding, problems: &mut Vec<QuotedProblem>) ->
             if *byte == b'\r' && text.get(at + 1) == Some(&b'\n') {
                 at += 1;
             } else {
-                at += plain(text.get(at..end).unwrap_or_default(), encoding, &mut elements);
+                at += read_plain_character(text.get(at..end).unwrap_or_default(), encoding, &mut elements);
             }
             continue;
         }
@@ -101,7 +101,7 @@ fn decode(text: &[u8], encoding: Encoding, problems: &mut Vec<QuotedProblem>) ->
 }
 
 /// Reads one ordinary character; returns its length. Bytes that are not UTF-8 represent themselves, as in Latin-1.
-fn plain(text: &[u8], encoding: Encoding, elements: &mut Vec<i32>) -> usize {
+fn read_plain_character(text: &[u8], encoding: Encoding, elements: &mut Vec<i32>) -> usize {
     let byte = text.first().copied().unwrap_or(0);
     let length = match byte {
         0xC2..=0xDF => 2,

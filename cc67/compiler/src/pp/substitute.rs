@@ -66,7 +66,7 @@ impl Preprocessor<'_> {
             let next = self.macros.body_token(at + 1).filter(|_| at + 1 < body.end);
             let after = at + usize::from(token.kind == TokenKind::Paste);
             if let Some(rest) = variadic
-                && let Some(inner) = self.optional(after, body.end)
+                && let Some(inner) = self.va_opt_range(after, body.end)
             {
                 at = inner.end + 1;
                 let mut part = Vec::new();
@@ -105,7 +105,7 @@ impl Preprocessor<'_> {
     }
 
     /// The tokens between the parentheses of `__VA_OPT__(…)`, if that is at this place of a body.
-    fn optional(&self, at: usize, end: usize) -> Option<Range<usize>> {
+    fn va_opt_range(&self, at: usize, end: usize) -> Option<Range<usize>> {
         let token = self.macros.body_token(at).filter(|_| at < end)?;
         if token.kind != TokenKind::Identifier || token.name != word::VA_OPT {
             return None;

@@ -33,7 +33,7 @@ pub fn render(diagnostics: &[Diagnostic], sources: &SourceMap) -> String {
         if text.len() + entry.len() >= LIMIT {
             // A first message of that length is cut, not lost.
             if text.is_empty() {
-                text.push_str(cut(&entry));
+                text.push_str(truncate(&entry));
                 text.push('\n');
             }
             break;
@@ -75,7 +75,7 @@ fn entry(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
 }
 
 /// The beginning of a text that is too long, in whole characters.
-fn cut(text: &str) -> &str {
+fn truncate(text: &str) -> &str {
     let end = (0..LIMIT - 1).rev().find(|end| text.is_char_boundary(*end));
     end.and_then(|end| text.get(..end)).unwrap_or_default()
 }

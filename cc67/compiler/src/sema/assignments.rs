@@ -19,7 +19,7 @@ impl Sema<'_> {
         self.report_finding(reversed_operator::finding(self.sources, from));
         let target = self.operand(to);
         let source = self.operand(from);
-        let target = self.modifiable(target?, to.span);
+        let target = self.modifiable_place(target?, to.span);
         let (target, source) = (target?, source?);
         if self.types.record_of(target.ty.ty).is_some() {
             return self.assign_record(target, source, from.span, span);
@@ -30,7 +30,8 @@ impl Sema<'_> {
         {
             self.report_finding(word.finding(span));
         }
-        let value = self.assigned(value, target.ty.ty, AssignmentTarget::Assignment, from.span)?;
+        let value =
+            self.convert_as_assignment(value, target.ty.ty, AssignmentTarget::Assignment, from.span)?;
         Some(Operand::Value(self.body.expr(ExprKind::Assign(target.place, value), target.ty.ty, span)))
     }
 
@@ -64,7 +65,7 @@ impl Sema<'_> {
     }
 
     /// The place that an assignment changes.
-    fn modifiable(&mut self, operand: Operand, span: Span) -> Option<TypedPlace> {
+    fn modifiable_place(&mut self, operand: Operand, span: Span) -> Option<TypedPlace> {
         let Operand::Place(located) = operand else {
             let what = match operand {
                 Operand::Function(..) => "a function",
@@ -115,7 +116,7 @@ impl Sema<'_> {
         let from = self.record_source(source, ty, AssignmentTarget::Assignment, source_span)?;
         if matches!(self.body.places[target.place].kind, PlaceKind::Local(..) | PlaceKind::Symbol(..)) {
             let copy = self.body.expr(ExprKind::Copy { to: target.place, from }, Types::VOID, span);
-            return Some(self.made(copy, target.place, span));
+            return Some(self.structure_result(copy, target.place, span));
         }
         // The address of the target is computed once, also if the value is used.
         let pointer_type = self.types.pointer_to(ty);
@@ -128,7 +129,7 @@ impl Sema<'_> {
         let effect = self.body.comma(store, copy, span);
         let pointer = self.body.load_local(kept, span);
         let value = self.body.place(PlaceKind::Pointer(pointer, 0), ty, span);
-        Some(self.made(effect, value, span))
+        Some(self.structure_result(effect, value, span))
     }
 
     /// `to op= from`
@@ -141,7 +142,7 @@ impl Sema<'_> {
     ) -> Option<ExprId> {
         let target = self.operand(to);
         let value = self.value(from);
-        let target = self.modifiable(target?, to.span)?;
+        let target = self.modifiable_place(target?, to.span)?;
         self.update(operator, target, value?, UpdateResult::New, span)
     }
 
@@ -154,7 +155,7 @@ impl Sema<'_> {
         span: Span,
     ) -> Option<ExprId> {
         let target = self.operand(operand)?;
-        let target = self.modifiable(target, operand.span)?;
+        let target = self.modifiable_place(target, operand.span)?;
         let operator = if is_increment { BinaryOperator::Add } else { BinaryOperator::Subtract };
         let one = self.body.int(1, Types::INT, span);
         let result = if is_prefix { UpdateResult::New } else { UpdateResult::Old };
@@ -175,7 +176,7 @@ impl Sema<'_> {
             if !from.is_integer() || !matches!(op, BinaryOp::Add | BinaryOp::Subtract) {
                 return self.refuse_update(operator, ty, from, span);
             }
-            (ty, self.scaled(value, element, span)?)
+            (ty, self.scale_to_bytes(value, element, span)?)
         } else {
             let is_integers = ty.is_integer() && from.is_integer();
             let is_arithmetic = ty.is_arithmetic() && from.is_arithmetic();
@@ -216,7 +217,7 @@ impl Sema<'_> {
     }
 
     /// The zero of a scalar type.
-    pub(super) fn zero(&mut self, ty: TypeId, span: Span) -> ExprId {
+    pub(super) fn zero_value(&mut self, ty: TypeId, span: Span) -> ExprId {
         let zero = if ty.is_floating() { Constant::Float(0.0) } else { Constant::Int(0) };
         self.body.constant(zero, ty, span)
     }

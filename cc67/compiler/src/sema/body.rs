@@ -111,7 +111,7 @@ impl Body {
 
     /// Adds an integer or pointer constant.
     pub(super) fn int(&mut self, value: i64, ty: TypeId, span: Span) -> ExprId {
-        self.expr(ExprKind::Int(constants::wrap(value, ty)), ty, span)
+        self.expr(ExprKind::Int(constants::truncate_to_type(value, ty)), ty, span)
     }
 
     /// Adds a constant.
@@ -179,14 +179,14 @@ impl Body {
             return self.constant(constants::convert(constant, from, to), to, span);
         }
         if to == Types::BOOL {
-            let truth = self.truth(value, span);
+            let truth = self.truth_value(value, span);
             return self.expr(ExprKind::Convert(truth), to, span);
         }
         self.expr(ExprKind::Convert(value), to, span)
     }
 
     /// `value != 0` as `int`.
-    pub(super) fn truth(&mut self, value: ExprId, span: Span) -> ExprId {
+    pub(super) fn truth_value(&mut self, value: ExprId, span: Span) -> ExprId {
         if let Some(constant) = self.as_constant(value) {
             return self.int(i64::from(constant.is_true()), Types::INT, span);
         }

@@ -57,7 +57,7 @@ impl Sema<'_> {
     pub(super) fn va_end(&mut self, list: &Expression, span: Span) -> Option<Operand> {
         self.va_list(list)?;
         let nothing = self.body.int(0, Types::INT, span);
-        Some(Operand::Value(self.dropped(nothing, span)))
+        Some(Operand::Value(self.discard_value(nothing, span)))
     }
 
     /// `va_copy(to, from)`
@@ -72,7 +72,7 @@ impl Sema<'_> {
     fn store_list(&mut self, list: PlaceId, value: ExprId, span: Span) -> Operand {
         let ty = self.body.places[list].ty;
         let store = self.body.expr(ExprKind::Assign(list, value), ty, span);
-        Operand::Value(self.dropped(store, span))
+        Operand::Value(self.discard_value(store, span))
     }
 
     /// A `va_list`: any variable of type `char *`.
@@ -157,7 +157,7 @@ impl Sema<'_> {
             _ => {
                 self.statements(statements, &mut out);
                 let nothing = self.body.int(0, Types::INT, span);
-                Some((Operand::Value(self.dropped(nothing, span)), span))
+                Some((Operand::Value(self.discard_value(nothing, span)), span))
             }
         };
         self.scopes.leave();

@@ -83,7 +83,7 @@ impl Sema<'_> {
         let definition = self.symbols.facts(symbol).convention.as_ref().map(|definer| &definer.call);
         match definition {
             None => self.call_declared(symbol, visible, values, span),
-            Some(definition) if fits(definition, given) => {
+            Some(definition) if accepts_count(definition, given) => {
                 let definition = definition.clone();
                 self.finish_call(Callee::Symbol(symbol), Some(symbol), definition, values, span)
             }
@@ -135,7 +135,7 @@ impl Sema<'_> {
         let visible = self.types.function(visible)?.clone();
         match &visible.parameters {
             // The visible prototype does not match either: the call is wrong.
-            ParameterTypes::Prototype { .. } if !fits(&visible, given) => {
+            ParameterTypes::Prototype { .. } if !accepts_count(&visible, given) => {
                 self.check_count(Some(symbol), &visible, given, span)?;
                 None
             }
@@ -162,7 +162,7 @@ impl Sema<'_> {
             let operand = match types.get(index) {
                 Some(ty) if !self.is_record(operand) => {
                     let value = self.read(operand, span)?;
-                    Operand::Value(self.assigned(
+                    Operand::Value(self.convert_as_assignment(
                         value,
                         ty.ty,
                         AssignmentTarget::Argument(index + 1, Some(symbol)),
@@ -194,9 +194,10 @@ impl Sema<'_> {
                 self.report(Diagnostic::error(span, message));
                 return None;
             }
-            values.push((Operand::Value(self.zero(ty.ty, span)), span));
+            values.push((Operand::Value(self.zero_value(ty.ty, span)), span));
         }
-        let effects: Vec<_> = extra.into_iter().map(|(operand, span)| self.effect(operand, span)).collect();
+        let effects: Vec<_> =
+            extra.into_iter().map(|(operand, span)| self.evaluate_effect(operand, span)).collect();
         let mut result = self.finish_call(Callee::Symbol(symbol), Some(symbol), definition, values, span)?;
         for effect in effects.into_iter().rev() {
             result = self.after(effect, result, span)?;
@@ -212,7 +213,8 @@ impl Sema<'_> {
             true => (Lint::ExtraArguments, "further ones are dropped"),
             false => (Lint::PrototypeMismatch, "missing ones are 0"),
         };
-        let message = format!("`{name}` takes {}, but {given} {} given", count(wanted.len()), are(given));
+        let message =
+            format!("`{name}` takes {}, but {given} {} given", count(wanted.len()), plural_verb(given));
         let definition = self.symbols.get(symbol).span;
         self.report(Diagnostic::warning(lint, span, message).at(at).label(definition, "defined here"));
     }
@@ -244,7 +246,7 @@ impl Sema<'_> {
         given: usize,
         span: Span,
     ) -> Option<()> {
-        if fits(ty, given) {
+        if accepts_count(ty, given) {
             return Some(());
         }
         let (types, is_variadic) = prototype(ty);
@@ -322,7 +324,7 @@ impl Sema<'_> {
         arguments.insert(0, address);
         let call =
             self.body.expr(ExprKind::Call(Call { callee, ty, arguments, variable }), Types::VOID, span);
-        Some(self.made(call, place, span))
+        Some(self.structure_result(call, place, span))
     }
 
     /// An argument converted to the type of its parameter; a structure is copied, and its address passed.
@@ -335,14 +337,14 @@ impl Sema<'_> {
     ) -> Option<ExprId> {
         if self.types.record_of(ty).is_none() {
             let value = self.read(operand, span)?;
-            return self.assigned(value, ty, target, span);
+            return self.convert_as_assignment(value, ty, target, span);
         }
         let from = self.record_source(operand, ty, target, span)?;
-        Some(self.copied(from, ty, span))
+        Some(self.copy_to_temporary(from, ty, span))
     }
 
     /// The address of a temporary copy of a structure.
-    fn copied(&mut self, from: PlaceId, ty: TypeId, span: Span) -> ExprId {
+    fn copy_to_temporary(&mut self, from: PlaceId, ty: TypeId, span: Span) -> ExprId {
         let copy = self.add_local(String::new(), QualifiedType::plain(ty), span);
         let to = self.local_place(copy, QualifiedType::plain(ty), span).place;
         let effect = self.body.expr(ExprKind::Copy { to, from }, Types::VOID, span);
@@ -363,7 +365,7 @@ impl Sema<'_> {
             && self.is_record(operand)
             && function.is_none_or(|function| self.firmware_type(function).is_none())
         {
-            return Some(self.copied(located.place, located.ty.ty, span));
+            return Some(self.copy_to_temporary(located.place, located.ty.ty, span));
         }
         let value = self.read(operand, span)?;
         let value = self.promote(value, span);
@@ -381,7 +383,7 @@ fn prototype(ty: &FunctionType) -> (&[QualifiedType], bool) {
 }
 
 /// Reports whether a prototype takes this number of arguments.
-fn fits(ty: &FunctionType, given: usize) -> bool {
+fn accepts_count(ty: &FunctionType, given: usize) -> bool {
     let (types, is_variadic) = prototype(ty);
     given == types.len() || (is_variadic && given > types.len())
 }
@@ -394,6 +396,6 @@ fn count(number: usize) -> String {
     }
 }
 
-const fn are(number: usize) -> &'static str {
+const fn plural_verb(number: usize) -> &'static str {
     if number == 1 { "is" } else { "are" }
 }

@@ -31,7 +31,7 @@ impl Constant {
 }
 
 /// An integer truncated to the width of its type and extended again.
-pub(crate) const fn wrap(value: i64, ty: TypeId) -> i64 {
+pub(crate) const fn truncate_to_type(value: i64, ty: TypeId) -> i64 {
     match ty {
         Types::BOOL => (value != 0) as i64,
         Types::CHAR | Types::SIGNED_CHAR => value as i8 as i64,
@@ -56,17 +56,17 @@ pub(crate) fn convert(constant: Constant, from: TypeId, to: TypeId) -> Constant 
         Constant::Float(value) if to.is_floating() => Constant::Float(round(value, to)),
         Constant::Float(value) => Constant::Int(integer_from(value, to)),
         Constant::Int(value) if to.is_floating() => Constant::Float(float_from(value, from, to)),
-        Constant::Int(value) => Constant::Int(wrap(value, to)),
+        Constant::Int(value) => Constant::Int(truncate_to_type(value, to)),
     }
 }
 
 /// Toward zero; `char` and `short` go through `int` (`dialect.md` 1.4).
 fn integer_from(value: f64, to: TypeId) -> i64 {
     match to {
-        Types::UNSIGNED => wrap(i64::from(arith::i32_from_f64_u(value)), to),
+        Types::UNSIGNED => truncate_to_type(i64::from(arith::i32_from_f64_u(value)), to),
         Types::LONG_LONG => arith::i64_from_f64_s(value),
         Types::UNSIGNED_LONG_LONG => arith::i64_from_f64_u(value),
-        _ => wrap(i64::from(arith::i32_from_f64_s(value)), to),
+        _ => truncate_to_type(i64::from(arith::i32_from_f64_s(value)), to),
     }
 }
 
@@ -84,9 +84,9 @@ fn float_from(value: i64, from: TypeId, to: TypeId) -> f64 {
 pub(crate) fn unary(op: UnaryOp, constant: Constant, ty: TypeId) -> Option<Constant> {
     Some(match (op, constant) {
         (UnaryOp::Not, _) => Constant::Int(i64::from(!constant.is_true())),
-        (UnaryOp::Negate, Constant::Int(value)) => Constant::Int(wrap(value.wrapping_neg(), ty)),
+        (UnaryOp::Negate, Constant::Int(value)) => Constant::Int(truncate_to_type(value.wrapping_neg(), ty)),
         (UnaryOp::Negate, Constant::Float(value)) => Constant::Float(-value),
-        (UnaryOp::Complement, Constant::Int(value)) => Constant::Int(wrap(!value, ty)),
+        (UnaryOp::Complement, Constant::Int(value)) => Constant::Int(truncate_to_type(!value, ty)),
         (UnaryOp::Complement, Constant::Float(_)) => return None,
     })
 }
@@ -101,7 +101,7 @@ pub(crate) fn binary(op: BinaryOp, a: Constant, b: Constant, ty: TypeId) -> Opti
                 true => op.on_i64(a, b)?,
                 false => i64::from(op.on_i32(a as i32, b as i32)?),
             };
-            Some(Constant::Int(wrap(value, ty)))
+            Some(Constant::Int(truncate_to_type(value, ty)))
         }
         (Constant::Float(a), Constant::Float(b)) => {
             let op = machine::BinaryOp::of(op, false);

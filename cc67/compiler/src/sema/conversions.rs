@@ -60,7 +60,7 @@ impl Sema<'_> {
     }
 
     /// Two arithmetic operands in their common type.
-    pub(super) fn usual(&mut self, a: ExprId, b: ExprId, span: Span) -> (ExprId, ExprId) {
+    pub(super) fn usual_conversions(&mut self, a: ExprId, b: ExprId, span: Span) -> (ExprId, ExprId) {
         let (a, b) = (self.promote(a, span), self.promote(b, span));
         let common = convert::common(self.body.ty(a), self.body.ty(b));
         self.lint_division(a, common);
@@ -76,7 +76,7 @@ impl Sema<'_> {
     }
 
     /// Converts a value as by an assignment to the destination's type.
-    pub(super) fn assigned(
+    pub(super) fn convert_as_assignment(
         &mut self,
         value: ExprId,
         to: TypeId,
@@ -105,7 +105,7 @@ impl Sema<'_> {
                 self.warn_conversion(Lint::IntPointer, message, value, to, target, span);
             }
             _ if self.is_pointee(value, to, target) => {
-                let refusal = self.refusal(from, to, target, span);
+                let refusal = self.conversion_error(from, to, target, span);
                 self.report(refusal.help(missing_address::help(self.sources, span)));
                 return None;
             }
@@ -114,7 +114,7 @@ impl Sema<'_> {
                 return None;
             }
         }
-        Some(self.converted(value, to, span))
+        Some(self.convert_unchecked(value, to, span))
     }
 
     /// Reports whether a variable is passed for a parameter that points to its type.
@@ -168,10 +168,10 @@ impl Sema<'_> {
     }
 
     /// Converts a value to another type, including pointers; the caller has checked that this is valid.
-    pub(super) fn converted(&mut self, value: ExprId, to: TypeId, span: Span) -> ExprId {
+    pub(super) fn convert_unchecked(&mut self, value: ExprId, to: TypeId, span: Span) -> ExprId {
         self.lint_misaligned(value, to, span);
         if self.types.is_pointer(to) && self.types.is_pointer(self.body.ty(value)) {
-            return self.retyped(value, to, span);
+            return self.cast_pointer(value, to, span);
         }
         self.body.convert(value, to, span)
     }
@@ -264,7 +264,7 @@ impl Sema<'_> {
     fn persist_offset(&self, value: ExprId) -> Option<i32> {
         let ExprKind::Address(place) = self.body.exprs[value].kind else { return None };
         let PlaceKind::Symbol(symbol, offset) = self.body.places[place].kind else { return None };
-        (Some(symbol) == self.symbols.linked(self.persist)).then_some(offset)
+        (Some(symbol) == self.symbols.linked_symbol(self.persist)).then_some(offset)
     }
 
     /// Warns about `(double *)&persist.UserData[1]`: the board loads a double without the low address bits.
@@ -339,11 +339,11 @@ impl Sema<'_> {
         target: AssignmentTarget,
         span: Span,
     ) {
-        let refusal = self.refusal(from, to, target, span);
+        let refusal = self.conversion_error(from, to, target, span);
         self.report(refusal);
     }
 
-    fn refusal(&self, from: TypeId, to: TypeId, target: AssignmentTarget, span: Span) -> Diagnostic {
+    fn conversion_error(&self, from: TypeId, to: TypeId, target: AssignmentTarget, span: Span) -> Diagnostic {
         let help = self.conversion_help(from, to, target, span);
         let (from, to) = (self.spell(from), self.spell(to));
         let diagnostic =

@@ -31,7 +31,7 @@ impl Sema<'_> {
     pub(super) fn file_declaration(&mut self, declaration: &Declaration) {
         let storage = declaration.specifiers.storage.map(|(storage, _)| storage);
         self.check_file_storage(declaration);
-        let base = self.specified(&declaration.specifiers, ImplicitInt::Warn);
+        let base = self.specified_type(&declaration.specifiers, ImplicitInt::Warn);
         for init in &declaration.declarators {
             let Some(declared) = self.declared_name(base, &declaration.specifiers, init) else { continue };
             match storage {
@@ -129,7 +129,7 @@ impl Sema<'_> {
             self.already_declared(name, span, first);
             return None;
         }
-        let Some(symbol) = self.symbols.linked(name) else {
+        let Some(symbol) = self.symbols.linked_symbol(name) else {
             let linkage =
                 if storage == Some(Storage::Static) { Linkage::Internal } else { Linkage::External };
             let spelling = self.names.get(name);
@@ -241,7 +241,7 @@ impl Sema<'_> {
             return None;
         }
         self.check_size(name, ty, span)?;
-        let Some(symbol) = self.symbols.linked(name) else {
+        let Some(symbol) = self.symbols.linked_symbol(name) else {
             let linkage =
                 if storage == Some(Storage::Static) { Linkage::Internal } else { Linkage::External };
             let spelling = self.names.get(name);

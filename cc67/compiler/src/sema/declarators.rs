@@ -195,7 +195,7 @@ impl Sema<'_> {
     }
 
     fn parameter(&mut self, parameter: &Parameter) -> Option<DeclaredParameter> {
-        let base = self.specified(&parameter.specifiers, ImplicitInt::Warn)?;
+        let base = self.specified_type(&parameter.specifiers, ImplicitInt::Warn)?;
         let ty = self.derived_type(base, &parameter.declarator.derived, parameter.span)?;
         let ty = self.types.decayed(ty);
         let (name, span) =

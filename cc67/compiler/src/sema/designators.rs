@@ -9,7 +9,7 @@ use crate::source::Span;
 
 impl Sema<'_> {
     /// Follows designators from the outermost level; returns the number of elements of a range.
-    pub(super) fn designate(
+    pub(super) fn follow_designators(
         &mut self,
         stack: &mut Vec<AggregateLevel>,
         designators: &[Designator],
@@ -46,7 +46,7 @@ impl Sema<'_> {
     /// Opens a level for the current part of the innermost level.
     fn open_current(&mut self, stack: &mut Vec<AggregateLevel>, span: Span) -> Option<()> {
         let slot = self.next_slot(stack, span)?;
-        let Some(level) = self.level(slot) else {
+        let Some(level) = self.aggregate_level(slot) else {
             let message = format!("`{}` has no parts", self.spell(slot.ty.ty));
             self.report(Diagnostic::error(span, message));
             return None;

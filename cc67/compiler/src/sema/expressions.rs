@@ -73,7 +73,7 @@ impl Sema<'_> {
             ExpressionKind::VaEnd(list) => self.va_end(list, span),
             ExpressionKind::VaCopy(to, from) => self.va_copy(to, from, span),
             ExpressionKind::Offsetof(name, path) => self.offset_of(name, path, span),
-            ExpressionKind::Generic { value, choices } => self.generic(value, choices, span),
+            ExpressionKind::Generic { value, choices } => self.generic_selection(value, choices, span),
             ExpressionKind::StatementExpression(statements) => self.statement_expression(statements, span),
             ExpressionKind::LabelAddress(name, name_span) => {
                 self.label_address(*name, *name_span, span).map(Operand::Value)
@@ -123,10 +123,10 @@ impl Sema<'_> {
             return self.not_indexable(base, self.body.ty(position), span);
         };
         let position = self.index_value(position, index.span)?;
-        let bytes = self.scaled(position, element, span)?;
+        let bytes = self.scale_to_bytes(position, element, span)?;
         let moved = self.step(pointer, bytes, span);
         self.lint_user_data(pointer, moved, self.types.size_of(element.ty), index.span);
-        Some(self.dereferenced(moved, element, span))
+        Some(self.pointee_operand(moved, element, span))
     }
 
     fn not_indexable(&mut self, base: &Expression, ty: TypeId, span: Span) -> Option<Operand> {
@@ -159,11 +159,11 @@ impl Sema<'_> {
     }
 
     /// Returns the operand `*pointer`.
-    pub(super) fn dereferenced(&mut self, pointer: ExprId, to: QualifiedType, span: Span) -> Operand {
+    pub(super) fn pointee_operand(&mut self, pointer: ExprId, to: QualifiedType, span: Span) -> Operand {
         if self.types.is_function(to.ty) {
             return Operand::Function(self.callee_of(pointer), to.ty);
         }
-        Operand::Place(self.pointed(pointer, to, span))
+        Operand::Place(self.pointee_place(pointer, to, span))
     }
 
     /// A function by its address; if the address is a symbol's, by its name.
@@ -218,7 +218,7 @@ impl Sema<'_> {
             self.report(Diagnostic::error(base.span, message));
             return None;
         };
-        Some(self.pointed(pointer, to, base.span))
+        Some(self.pointee_place(pointer, to, base.span))
     }
 
     fn dot_base(&mut self, operand: Operand, base: &Expression, member: Name) -> Option<TypedPlace> {
@@ -325,7 +325,7 @@ impl Sema<'_> {
             );
             return None;
         }
-        Some(self.dereferenced(pointer, to, span))
+        Some(self.pointee_operand(pointer, to, span))
     }
 
     /// `&a`
@@ -354,8 +354,8 @@ impl Sema<'_> {
         let operand_value = self.operand(operand);
         let (to, value) = (to?.ty, operand_value?);
         if to.is_void() {
-            let effect = self.effect(value, operand.span);
-            return Some(Operand::Value(self.dropped(effect, span)));
+            let effect = self.evaluate_effect(value, operand.span);
+            return Some(Operand::Value(self.discard_value(effect, span)));
         }
         if self.is_record(value) && self.operand_type(value).ty == to {
             return Some(value);
@@ -377,11 +377,11 @@ impl Sema<'_> {
             // The cast is kept: its value is no longer a bit-field, which would become an `int`.
             return Some(Operand::Value(self.body.expr(ExprKind::Convert(value), to, span)));
         }
-        Some(Operand::Value(self.converted(value, to, span)))
+        Some(Operand::Value(self.convert_unchecked(value, to, span)))
     }
 
     /// A value that is evaluated for its effect, as an expression of type `void`.
-    pub(super) fn dropped(&mut self, effect: ExprId, span: Span) -> ExprId {
+    pub(super) fn discard_value(&mut self, effect: ExprId, span: Span) -> ExprId {
         if self.body.ty(effect).is_void() {
             return effect;
         }
@@ -440,7 +440,7 @@ impl Sema<'_> {
     fn comma_effect(&mut self, expression: &Expression) -> Option<ExprId> {
         let operand = self.operand(expression)?;
         self.lint_unused(expression, operand);
-        Some(self.effect(operand, expression.span))
+        Some(self.evaluate_effect(operand, expression.span))
     }
 
     /// An operand that is evaluated after an effect.
@@ -448,7 +448,7 @@ impl Sema<'_> {
         if let Operand::Place(located) = operand
             && self.is_record(operand)
         {
-            return Some(self.made(effect, located.place, span));
+            return Some(self.structure_result(effect, located.place, span));
         }
         let value = match operand {
             Operand::Value(value) => value,
@@ -476,7 +476,7 @@ impl Sema<'_> {
     }
 
     /// `_Generic`: selects the association whose type is that of the value.
-    fn generic(
+    fn generic_selection(
         &mut self,
         value: &Expression,
         choices: &[(Option<TypeName>, Expression)],

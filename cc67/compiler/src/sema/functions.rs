@@ -61,7 +61,7 @@ impl Sema<'_> {
     }
 
     fn signature(&mut self, definition: &FunctionDefinition, span: Span) -> Option<Signature> {
-        let base = self.specified(&definition.specifiers, ImplicitInt::Silent)?;
+        let base = self.specified_type(&definition.specifiers, ImplicitInt::Silent)?;
         let Some((Derived::Function(list), outer)) = definition.declarator.derived.split_first() else {
             self.report(Diagnostic::error(span, "a function definition needs a parameter list"));
             return None;
@@ -107,7 +107,7 @@ impl Sema<'_> {
             );
         }
         for declaration in &definition.old_style {
-            let base = self.specified(&declaration.specifiers, ImplicitInt::Warn)?;
+            let base = self.specified_type(&declaration.specifiers, ImplicitInt::Warn)?;
             for init in &declaration.declarators {
                 let declared = self.declared_name(Some(base), &declaration.specifiers, init)?;
                 let ty = self.types.decayed(declared.ty);

@@ -312,7 +312,9 @@ impl Sema<'_> {
         {
             return Some(self.fill_text(leaves, slot, text, value.span));
         }
-        let Some(level) = self.level(slot) else { return self.fill_scalar_list(leaves, slot, items, span) };
+        let Some(level) = self.aggregate_level(slot) else {
+            return self.fill_scalar_list(leaves, slot, items, span);
+        };
         let mut stack = vec![level];
         let mut reach = 0;
         let mut is_sound = true;
@@ -340,7 +342,7 @@ impl Sema<'_> {
     ) -> Option<TypeId> {
         match items {
             [] => {
-                let zero = self.zero(slot.ty.ty, span);
+                let zero = self.zero_value(slot.ty.ty, span);
                 let Slot { ty, offset, bits } = slot;
                 leaves.push(Leaf { offset, ty: ty.ty, bits, value: LeafValue::Scalar(zero), span });
             }
@@ -373,7 +375,7 @@ impl Sema<'_> {
         let mut times = 1;
         if !item.designators.is_empty() {
             stack.truncate(1);
-            times = self.designate(stack, &item.designators)?;
+            times = self.follow_designators(stack, &item.designators)?;
         }
         let depth = stack.len();
         let mut kept = None;
@@ -470,7 +472,7 @@ impl Sema<'_> {
                 self.fill_text(leaves, slot, text, value.span);
                 return Some(());
             }
-            let Some(level) = self.level(slot) else {
+            let Some(level) = self.aggregate_level(slot) else {
                 let operand = match operand {
                     Some(operand) => operand,
                     None => self.operand(value)?,
@@ -526,7 +528,12 @@ impl Sema<'_> {
             LeafValue::Record(self.record_source(operand, ty.ty, AssignmentTarget::Initializer, span)?)
         } else {
             let value = self.read(operand, span)?;
-            LeafValue::Scalar(self.assigned(value, ty.ty, AssignmentTarget::Initializer, span)?)
+            LeafValue::Scalar(self.convert_as_assignment(
+                value,
+                ty.ty,
+                AssignmentTarget::Initializer,
+                span,
+            )?)
         };
         leaves.push(Leaf { offset, ty: ty.ty, bits, value, span });
         Some(())
@@ -570,7 +577,7 @@ impl Sema<'_> {
     }
 
     /// The level of an aggregate; `None` for scalars.
-    pub(super) fn level(&self, slot: Slot) -> Option<AggregateLevel> {
+    pub(super) fn aggregate_level(&self, slot: Slot) -> Option<AggregateLevel> {
         let shape = match self.types.get(slot.ty.ty) {
             Type::Array(element, length) => {
                 Shape::Array { element: *element, length: *length, size: self.types.size_of(element.ty)? }

@@ -16,7 +16,7 @@ impl Sema<'_> {
     pub(super) fn block_declaration(&mut self, declaration: &Declaration, out: &mut Vec<Stmt>) {
         let storage = declaration.specifiers.storage.map(|(storage, _)| storage);
         // One at a time: an initialiser sees the names before it.
-        let base = self.specified(&declaration.specifiers, ImplicitInt::Silent);
+        let base = self.specified_type(&declaration.specifiers, ImplicitInt::Silent);
         for init in &declaration.declarators {
             let Some(declared) = self.declared_name(base, &declaration.specifiers, init) else { continue };
             match storage {

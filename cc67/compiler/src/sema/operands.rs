@@ -44,7 +44,7 @@ impl Sema<'_> {
                 let pointer = self.types.pointer_to(ty);
                 Some(match callee {
                     Callee::Symbol(symbol) => self.symbol_address(symbol, pointer, span),
-                    Callee::Pointer(value) => self.retyped(value, pointer, span),
+                    Callee::Pointer(value) => self.cast_pointer(value, pointer, span),
                 })
             }
         }
@@ -120,7 +120,7 @@ impl Sema<'_> {
     }
 
     /// Evaluates an operand only for its effect; lowering may drop the expression if it has none.
-    pub(super) fn effect(&mut self, operand: Operand, span: Span) -> ExprId {
+    pub(super) fn evaluate_effect(&mut self, operand: Operand, span: Span) -> ExprId {
         match operand {
             Operand::Value(value) => value,
             Operand::Place(located) => self.place_effect(located, span),
@@ -141,7 +141,7 @@ impl Sema<'_> {
     }
 
     /// A structure result: `effect` is evaluated, then the place holds the value.
-    pub(super) fn made(&mut self, effect: ExprId, place: PlaceId, span: Span) -> Operand {
+    pub(super) fn structure_result(&mut self, effect: ExprId, place: PlaceId, span: Span) -> Operand {
         let ty = self.body.places[place].ty;
         let pointer_type = self.types.pointer_to(ty);
         let address = self.address(place, pointer_type, span);

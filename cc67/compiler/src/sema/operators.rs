@@ -48,7 +48,7 @@ impl Sema<'_> {
         let is_numbers = self.body.ty(a).is_arithmetic() && self.body.ty(b).is_arithmetic();
         match operator.meaning() {
             OperatorMeaning::Arithmetic(op) if is_numbers => {
-                let (a, b) = self.usual(a, b, span);
+                let (a, b) = self.usual_conversions(a, b, span);
                 self.lint_overflow(op, a, b, span);
                 Some(self.body.binary(op, a, b, span))
             }
@@ -56,7 +56,7 @@ impl Sema<'_> {
             OperatorMeaning::Arithmetic(BinaryOp::Subtract) => self.pointer_subtract(a, b, span),
             OperatorMeaning::Arithmetic(_) => self.refuse_operands(operator, a, b, span),
             OperatorMeaning::Bitwise(op) if self.are_integers(a, b) => {
-                let (a, b) = self.usual(a, b, span);
+                let (a, b) = self.usual_conversions(a, b, span);
                 Some(self.body.binary(op, a, b, span))
             }
             OperatorMeaning::Shift(op) if self.are_integers(a, b) => {
@@ -109,7 +109,7 @@ impl Sema<'_> {
         else {
             return self.refuse_operands(BinaryOperator::Add, a, b, span);
         };
-        let bytes = self.scaled(count, element, span)?;
+        let bytes = self.scale_to_bytes(count, element, span)?;
         let moved = self.step(pointer, bytes, span);
         // The address after the last element may be computed.
         self.lint_user_data(pointer, moved, None, span);
@@ -122,7 +122,7 @@ impl Sema<'_> {
             return self.refuse_operands(BinaryOperator::Subtract, a, b, span);
         };
         if self.body.ty(b).is_integer() {
-            let bytes = self.scaled(b, element, span)?;
+            let bytes = self.scale_to_bytes(b, element, span)?;
             if self.body.as_int(bytes).is_some() {
                 let bytes = self.body.unary(crate::typed::UnaryOp::Negate, bytes, span);
                 return Some(self.step(a, bytes, span));
@@ -158,7 +158,12 @@ impl Sema<'_> {
     }
 
     /// A number of elements as an `int` number of bytes.
-    pub(super) fn scaled(&mut self, count: ExprId, element: QualifiedType, span: Span) -> Option<ExprId> {
+    pub(super) fn scale_to_bytes(
+        &mut self,
+        count: ExprId,
+        element: QualifiedType,
+        span: Span,
+    ) -> Option<ExprId> {
         let size = self.step_size(element, span)?;
         let count = self.body.convert(count, Types::INT, span);
         if size == 1 {
@@ -179,7 +184,7 @@ impl Sema<'_> {
         let (x, y) = (self.body.ty(a), self.body.ty(b));
         if x.is_arithmetic() && y.is_arithmetic() {
             self.lint_signs(a, b, span);
-            return Some(self.usual(a, b, span));
+            return Some(self.usual_conversions(a, b, span));
         }
         if x.is_floating() || y.is_floating() {
             self.refuse_operands(operator, a, b, span);
@@ -188,7 +193,7 @@ impl Sema<'_> {
         match (self.types.is_pointer(x), self.types.is_pointer(y)) {
             (true, true) => {
                 self.check_pointer_pair(a, b, span);
-                Some((a, self.retyped(b, x, span)))
+                Some((a, self.cast_pointer(b, x, span)))
             }
             (true, false) => {
                 self.lint_int_pointer_pair(b, span);
@@ -234,8 +239,8 @@ impl Sema<'_> {
             self.body.as_constant(b).map(Constant::is_true),
         ) {
             (Some(left), _) if left == decides => self.body.int(i64::from(decides), Types::INT, span),
-            (Some(_), _) => self.body.truth(b, span),
-            (None, Some(right)) if right != decides => self.body.truth(a, span),
+            (Some(_), _) => self.body.truth_value(b, span),
+            (None, Some(right)) if right != decides => self.body.truth_value(a, span),
             _ => {
                 let kind = if decides { ExprKind::Or(a, b) } else { ExprKind::And(a, b) };
                 self.body.expr(kind, Types::INT, span)
@@ -298,8 +303,8 @@ impl Sema<'_> {
             return self.choose_record(test, (a, then.span), (b, otherwise.span), span);
         }
         if self.operand_type(a).ty.is_void() || self.operand_type(b).ty.is_void() {
-            let (a, b) = (self.effect(a, then.span), self.effect(b, otherwise.span));
-            let (a, b) = (self.dropped(a, span), self.dropped(b, span));
+            let (a, b) = (self.evaluate_effect(a, then.span), self.evaluate_effect(b, otherwise.span));
+            let (a, b) = (self.discard_value(a, span), self.discard_value(b, span));
             return Some(Operand::Value(self.body.expr(
                 ExprKind::Conditional(test, a, b),
                 Types::VOID,
@@ -336,7 +341,7 @@ impl Sema<'_> {
     fn common_branches(&mut self, a: ExprId, b: ExprId, span: Span) -> Option<(ExprId, ExprId)> {
         let (x, y) = (self.body.ty(a), self.body.ty(b));
         if x.is_arithmetic() && y.is_arithmetic() {
-            return Some(self.usual(a, b, span));
+            return Some(self.usual_conversions(a, b, span));
         }
         match (self.types.pointee(x), self.types.pointee(y)) {
             (Some(from), Some(to)) => {
@@ -349,7 +354,7 @@ impl Sema<'_> {
                 } else {
                     self.common_pointer(from, to)
                 };
-                Some((self.retyped(a, ty, span), self.retyped(b, ty, span)))
+                Some((self.cast_pointer(a, ty, span), self.cast_pointer(b, ty, span)))
             }
             (Some(_), None) if y.is_integer() => {
                 self.lint_int_pointer_pair(b, span);
@@ -400,7 +405,7 @@ impl Sema<'_> {
         let pointer = self.types.pointer_to(x.ty.ty);
         let (a, b) = (self.address(x.place, pointer, a_span), self.address(y.place, pointer, b_span));
         let chosen = self.choose(test, a, b, span);
-        let mut located = self.pointed(chosen, QualifiedType::plain(x.ty.ty), span);
+        let mut located = self.pointee_place(chosen, QualifiedType::plain(x.ty.ty), span);
         located.is_lvalue = false;
         Some(Operand::Place(located))
     }

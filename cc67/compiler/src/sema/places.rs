@@ -49,7 +49,7 @@ impl Sema<'_> {
             PlaceKind::Pointer(pointer, offset) => {
                 let offset = self.body.int(i64::from(offset), Types::INT, span);
                 let moved = self.step(pointer, offset, span);
-                self.retyped(moved, ty, span)
+                self.cast_pointer(moved, ty, span)
             }
             PlaceKind::Local(local, _) => {
                 self.body.locals[local].in_memory = true;
@@ -60,7 +60,7 @@ impl Sema<'_> {
     }
 
     /// A pointer with another pointer type: the same address.
-    pub(super) fn retyped(&mut self, pointer: ExprId, ty: TypeId, span: Span) -> ExprId {
+    pub(super) fn cast_pointer(&mut self, pointer: ExprId, ty: TypeId, span: Span) -> ExprId {
         match self.body.exprs[pointer].kind {
             _ if self.body.ty(pointer) == ty => pointer,
             ExprKind::Address(place) => self.body.expr(ExprKind::Address(place), ty, span),
@@ -69,9 +69,9 @@ impl Sema<'_> {
     }
 
     /// The place to which a pointer points.
-    pub(super) fn pointed(&mut self, pointer: ExprId, ty: QualifiedType, span: Span) -> TypedPlace {
+    pub(super) fn pointee_place(&mut self, pointer: ExprId, ty: QualifiedType, span: Span) -> TypedPlace {
         let size = self.types.size_of(ty.ty).unwrap_or(0);
-        let (base, offset) = self.based(pointer);
+        let (base, offset) = self.split_base(pointer);
         let kind = match self.body.exprs[base].kind {
             ExprKind::Address(place) if offset == 0 && self.holds(place, size) => {
                 self.body.places[place].kind
@@ -83,7 +83,7 @@ impl Sema<'_> {
     }
 
     /// A pointer as another one plus a constant number of bytes; casts from pointer to pointer are left out.
-    fn based(&self, mut pointer: ExprId) -> (ExprId, i32) {
+    fn split_base(&self, mut pointer: ExprId) -> (ExprId, i32) {
         let mut offset = 0_i32;
         loop {
             match self.body.exprs[pointer].kind {
@@ -126,12 +126,14 @@ impl Sema<'_> {
         }
         match self.body.exprs[pointer].kind {
             ExprKind::Int(address) => self.body.int(address.wrapping_add(i64::from(offset)), ty, span),
-            ExprKind::Address(place) if let Some(kind) = self.moved(self.body.places[place].kind, offset) => {
+            ExprKind::Address(place)
+                if let Some(kind) = self.offset_place(self.body.places[place].kind, offset) =>
+            {
                 let moved = self.body.place(kind, self.body.places[place].ty, span);
                 self.body.expr(ExprKind::Address(moved), ty, span)
             }
             ExprKind::Binary(BinaryOp::Add, base, inner) if let Some(inner) = self.small_int(inner) => {
-                let base = self.retyped(base, ty, span);
+                let base = self.cast_pointer(base, ty, span);
                 let bytes = self.body.int(i64::from(inner) + i64::from(offset), Types::INT, span);
                 self.body.expr(ExprKind::Binary(BinaryOp::Add, base, bytes), ty, span)
             }
@@ -140,7 +142,7 @@ impl Sema<'_> {
     }
 
     /// A place moved by `offset` bytes, if that needs no arithmetic.
-    fn moved(&self, kind: PlaceKind, offset: i32) -> Option<PlaceKind> {
+    fn offset_place(&self, kind: PlaceKind, offset: i32) -> Option<PlaceKind> {
         Some(match kind {
             PlaceKind::Local(local, own) => {
                 let offset = own.checked_add_signed(offset)?;
@@ -161,7 +163,7 @@ impl Sema<'_> {
         span: Span,
     ) -> TypedPlace {
         let kind = self.body.places[whole.place].kind;
-        let moved = i32::try_from(offset).ok().and_then(|offset| self.moved(kind, offset));
+        let moved = i32::try_from(offset).ok().and_then(|offset| self.offset_place(kind, offset));
         let place = self.body.place(moved.unwrap_or(kind), ty.ty, span);
         let ty = QualifiedType {
             ty: ty.ty,

@@ -42,7 +42,8 @@ pub fn unit(unit: &Unit, names: &Names) -> String {
 #[must_use]
 pub fn function(unit: &Unit, function: &Function, names: &Names) -> String {
     let mut printer = Printer { unit, function, names, out: String::new(), depth: 1 };
-    let parameters: Vec<_> = function.parameters.iter().map(|local| printer.declared(*local)).collect();
+    let parameters: Vec<_> =
+        function.parameters.iter().map(|local| printer.declaration_text(*local)).collect();
     let result = unit.types.spell(names, function.ty.result);
     let name = &unit.symbols[function.symbol].name;
     let _ = writeln!(printer.out, "{result} {name}({}) {{", parameters.join(", "));
@@ -60,7 +61,7 @@ struct Printer<'a> {
 }
 
 impl Printer<'_> {
-    fn declared(&self, local: LocalId) -> String {
+    fn declaration_text(&self, local: LocalId) -> String {
         let ty = self.function.locals[local].ty;
         self.unit.types.spell_declaration(self.names, ty, &self.local(local))
     }
@@ -78,7 +79,7 @@ impl Printer<'_> {
         let _ = writeln!(self.out, "{:indent$}{text}", "", indent = self.depth * 2);
     }
 
-    fn inner(&mut self, stmts: &[Stmt]) {
+    fn print_block(&mut self, stmts: &[Stmt]) {
         self.depth += 1;
         self.stmts(stmts);
         self.depth -= 1;
@@ -95,15 +96,15 @@ impl Printer<'_> {
             StmtKind::Expr(expr) => self.line(&format!("{};", self.expr(*expr))),
             StmtKind::Block(inner) => {
                 self.line("{");
-                self.inner(inner);
+                self.print_block(inner);
                 self.line("}");
             }
             StmtKind::If { condition, then, otherwise } => {
                 self.line(&format!("if {} {{", self.expr(*condition)));
-                self.inner(then);
+                self.print_block(then);
                 if !otherwise.is_empty() {
                     self.line("} else {");
-                    self.inner(otherwise);
+                    self.print_block(otherwise);
                 }
                 self.line("}");
             }
@@ -115,7 +116,7 @@ impl Printer<'_> {
                     LoopTest::Behind => ("do {".to_owned(), format!("}} while {condition}")),
                 };
                 self.line(&head);
-                self.inner(body);
+                self.print_block(body);
                 self.line(&tail);
             }
             StmtKind::Switch { value, cases, has_default, body } => {
@@ -128,7 +129,7 @@ impl Printer<'_> {
                     .collect();
                 let default = if *has_default { "; default" } else { "" };
                 self.line(&format!("switch {} [{}{default}] {{", self.expr(*value), cases.join(", ")));
-                self.inner(body);
+                self.print_block(body);
                 self.line("}");
             }
             StmtKind::Case(number) => self.line(&format!("case #{number}:")),

@@ -139,7 +139,7 @@ impl Sema<'_> {
     }
 
     fn member_line(&mut self, builder: &mut LayoutBuilder, line: &MemberDeclaration) -> Option<()> {
-        let base = self.specified(&line.specifiers, ImplicitInt::Warn)?;
+        let base = self.specified_type(&line.specifiers, ImplicitInt::Warn)?;
         let align = self.alignment(&line.specifiers.alignments);
         if line.members.is_empty() {
             let Some(record) = self.types.record_of(base.ty) else {

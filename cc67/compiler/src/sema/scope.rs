@@ -77,7 +77,7 @@ impl<E: Copy> NameSpace<E> {
     }
 
     /// The bindings of a name from the innermost outwards.
-    fn chain(&self, name: Name) -> impl Iterator<Item = &Binding<E>> {
+    fn bindings_of(&self, name: Name) -> impl Iterator<Item = &Binding<E>> {
         let at = |link: Link| self.bindings.get(link as usize);
         std::iter::successors(at(self.heads[name]), move |binding| at(binding.hidden))
     }
@@ -164,7 +164,7 @@ impl Scopes {
 
     /// The visible declaration of a name.
     pub(super) fn lookup(&self, name: Name) -> Option<&Binding<Entity>> {
-        self.ordinary.chain(name).find(|binding| self.is_visible(binding))
+        self.ordinary.bindings_of(name).find(|binding| self.is_visible(binding))
     }
 
     /// The declaration of a name in the innermost scope.
@@ -179,12 +179,12 @@ impl Scopes {
 
     /// A file-scope declaration after the present item.
     pub(super) fn lookup_later(&self, name: Name) -> Option<&Binding<Entity>> {
-        self.ordinary.chain(name).find(|binding| binding.depth == 0 && binding.since > self.now)
+        self.ordinary.bindings_of(name).find(|binding| binding.depth == 0 && binding.since > self.now)
     }
 
     /// The visible declaration of a tag.
     pub(super) fn lookup_tag(&self, name: Name) -> Option<&Binding<Tag>> {
-        self.tags.chain(name).find(|binding| self.is_visible(binding))
+        self.tags.bindings_of(name).find(|binding| self.is_visible(binding))
     }
 
     /// The declaration of a tag in the innermost scope.

@@ -19,7 +19,7 @@ pub(super) enum ImplicitInt {
 
 impl Sema<'_> {
     /// The type that specifiers name, with their qualifiers; tags inside are declared.
-    pub(super) fn specified(
+    pub(super) fn specified_type(
         &mut self,
         specifiers: &Specifiers,
         implicit: ImplicitInt,
@@ -61,7 +61,7 @@ impl Sema<'_> {
 
     /// The type that a cast, `sizeof` or compound literal names.
     pub(super) fn type_name(&mut self, name: &TypeName) -> Option<QualifiedType> {
-        let base = self.specified(&name.specifiers, ImplicitInt::Warn)?;
+        let base = self.specified_type(&name.specifiers, ImplicitInt::Warn)?;
         self.derived_type(base, &name.declarator.derived, name.span)
     }
 

@@ -125,7 +125,7 @@ impl Sema<'_> {
         let span = expression.span;
         let Some(operand) = self.operand(expression) else { return };
         self.lint_unused(expression, operand);
-        let effect = self.effect(operand, span);
+        let effect = self.evaluate_effect(operand, span);
         out.push(Stmt { kind: StmtKind::Expr(effect), span });
     }
 
@@ -195,7 +195,7 @@ impl Sema<'_> {
         let step = step.and_then(|step| {
             let operand = self.operand(step)?;
             self.lint_unused(step, operand);
-            Some(self.effect(operand, step.span))
+            Some(self.evaluate_effect(operand, step.span))
         });
         let body = self.loop_body(body);
         self.push_loop(condition, LoopTest::Before, body, step, span, &mut out);
@@ -301,7 +301,7 @@ impl Sema<'_> {
         if result.is_void() || self.types.record_of(result).is_some() {
             return None;
         }
-        Some(self.zero(result, span))
+        Some(self.zero_value(result, span))
     }
 
     fn return_value(&mut self, expression: &Expression) -> Option<ExprId> {
@@ -309,12 +309,12 @@ impl Sema<'_> {
         let operand = self.operand(expression)?;
         // `return f();` in a `void` function passes no value if `f` is `void`, too.
         if self.body.is_void && self.operand_type(operand).ty.is_void() {
-            let effect = self.effect(operand, span);
+            let effect = self.evaluate_effect(operand, span);
             let zero = self.body.int(0, result, span);
             return Some(self.body.comma(effect, zero, span));
         }
         let value = self.read(operand, span)?;
-        self.assigned(value, result, AssignmentTarget::Return, span)
+        self.convert_as_assignment(value, result, AssignmentTarget::Return, span)
     }
 
     /// Copies a structure to the caller's result object.

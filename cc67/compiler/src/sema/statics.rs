@@ -80,7 +80,7 @@ impl Sema<'_> {
                     return None;
                 }
                 Err(culprit) => {
-                    let (span, what) = (self.body.span(culprit), self.culprit(culprit));
+                    let (span, what) = (self.body.span(culprit), self.describe_non_constant(culprit));
                     self.not_constant(span, what);
                     return None;
                 }
@@ -125,7 +125,7 @@ impl Sema<'_> {
     }
 
     /// A description of the part because of which an expression is not constant.
-    fn culprit(&self, value: ExprId) -> &'static str {
+    fn describe_non_constant(&self, value: ExprId) -> &'static str {
         match &self.body.exprs[value].kind {
             ExprKind::Load(_) => "the value of a variable",
             ExprKind::Call(_) => "a call",

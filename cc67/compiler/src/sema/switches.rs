@@ -89,7 +89,8 @@ impl Sema<'_> {
             None => low,
         };
         let (Some(low), Some(high)) = (low, high) else { return };
-        let case = Case { first: constants::wrap(low, ty), last: constants::wrap(high, ty) };
+        let case =
+            Case { first: constants::truncate_to_type(low, ty), last: constants::truncate_to_type(high, ty) };
         let label = last.map_or(first.span, |last| first.span.to(last.span));
         let (low, high) = case.values(ty.is_unsigned());
         if low > high {

@@ -43,7 +43,7 @@ pub(super) struct Symbols {
 
 impl Symbols {
     /// The symbol of a name with linkage.
-    pub(super) fn linked(&self, name: Name) -> Option<SymbolId> {
+    pub(super) fn linked_symbol(&self, name: Name) -> Option<SymbolId> {
         self.linked[name].expand()
     }
 

@@ -20,7 +20,7 @@ use crate::words::suggest;
 impl Sema<'_> {
     /// A call of a name without declaration.
     pub(super) fn undeclared_function(&mut self, name: Name, span: Span) -> Option<(Callee, TypeId)> {
-        match self.symbols.linked(name) {
+        match self.symbols.linked_symbol(name) {
             Some(symbol) if self.types.is_function(self.symbols.get(symbol).ty) => {
                 self.late_function(symbol, span);
                 Some((Callee::Symbol(symbol), self.symbols.get(symbol).ty))

@@ -59,7 +59,7 @@ impl Controller {
         let power_up = self.tick().get() as f64 * TIMEBASE - board_seconds;
         let (options, linked_for) = self.monitor.get_mut().options();
         sampler.begin(self.client.get_mut(), options, linked_for)?;
-        self.monitor.get_mut().forget(thread);
+        self.monitor.get_mut().invalidate(thread);
         self.threads.note_served(thread);
         let rate = sampler.rate();
         self.sampling = Some(ActiveSampling { sampler, power_up, rows: Vec::new() });
@@ -88,7 +88,7 @@ impl Controller {
     /// Stops the sampler.
     pub(super) fn end_sampling(&mut self) {
         let Some(sampling) = self.sampling.take().filter(|_| self.lost.is_none()) else { return };
-        if let Err(error) = self.client.get_mut().kill(sampling.thread()) {
+        if let Err(error) = self.client.get_mut().stop_thread(sampling.thread()) {
             self.note_error(&error);
         }
         self.threads.note_stopped(sampling.thread());

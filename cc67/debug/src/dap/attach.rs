@@ -138,7 +138,7 @@ impl AttachedEditor {
             }
             let mut herald = OutputReporter::new(&mut server.wire, &mut server.early, debugger);
             let stop = debugger.proceed(&goal, limit, &mut |event| {
-                herald.tell(event);
+                herald.report(event);
                 events(event.clone());
             });
             let OutputReporter { failed, late, .. } = herald;

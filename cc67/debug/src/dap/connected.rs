@@ -36,13 +36,13 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         let Some(shell) = &mut self.shell else { return Ok(()) };
         let debugger = shell.debugger_mut();
         let session = debugger.session();
-        if session.target().lost().is_some() {
+        if session.target().loss_reason().is_some() {
             return Ok(());
         }
         let threads = session.programs().iter().map(|program| program.thread);
         let active: Vec<_> = threads.filter(|thread| session.thread(*thread).is_active()).collect();
         for thread in active {
-            debugger.kill(thread);
+            debugger.stop_thread(thread);
             self.wire.output("console", &format!("thread {thread} of the controller was killed\n"))?;
         }
         Ok(())

@@ -43,20 +43,20 @@ pub fn editors(listener: TcpListener) -> io::Result<Receiver<Editor>> {
             let Some(admission) = seats.take(close.ok()) else { continue };
             let sender = sender.clone();
             // If no thread can be started, the connection is closed.
-            let _ = thread::Builder::new().spawn(move || hear(stream, admission.seat, &sender));
+            let _ = thread::Builder::new().spawn(move || await_first_data(stream, admission.seat, &sender));
         }
     })?;
     Ok(editors)
 }
 
 /// Waits for the first data of a connection, and passes it on.
-fn hear(stream: TcpStream, seat: Seat, sender: &Sender<Editor>) {
+fn await_first_data(stream: TcpStream, seat: Seat, sender: &Sender<Editor>) {
     let has_spoken = stream
         .set_read_timeout(Some(FIRST_WORDS))
         .and_then(|()| stream.peek(&mut [0]))
         .is_ok_and(|bytes| bytes > 0);
     if has_spoken && stream.set_read_timeout(None).is_ok() {
-        seat.hear();
+        seat.mark_active();
         // An error means that editors are no longer served.
         let _ = sender.send(Editor { stream, _seat: seat });
     }

@@ -340,7 +340,7 @@ impl<W: Write, T: Target> Server<'_, W, T> {
         let debugger = shell.debugger_mut();
         let is_forward = matches!(kind, MoveRequest::Forward(_) | MoveRequest::Again);
         let mut herald = OutputReporter::new(&mut self.wire, &mut self.early, debugger);
-        let mut tell = |event: &Event| herald.tell(event);
+        let mut tell = |event: &Event| herald.report(event);
         let result = match kind {
             MoveRequest::Forward(StepKind::Continue) => Ok(debugger.go_on(&mut tell)),
             MoveRequest::Forward(StepKind::Into) => debugger.step(&mut tell),
@@ -511,7 +511,7 @@ impl<'a, W: Write> OutputReporter<'a, W> {
         Self { wire, early, late: String::new(), infos, failed: None, has_trapped: false }
     }
 
-    fn tell(&mut self, event: &Event) {
+    fn report(&mut self, event: &Event) {
         self.has_trapped |= matches!(event.kind, EventKind::Trap(_));
         let told = match &event.kind {
             EventKind::ConsoleLine(line) if self.early.take(line) => Ok(()),

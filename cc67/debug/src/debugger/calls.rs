@@ -35,11 +35,11 @@ impl<T: Target> Debugger<T> {
             let value = probe.value_with(&at, &results);
             let Some(call) = results.take_next() else {
                 let value = value?;
-                let worked = work(&value, &probe.shown(&at));
+                let worked = work(&value, &probe.display_context(&at));
                 break at.checked(worked);
             };
             let slot = self.call_function(expression, &call)?;
-            results.note(&call, slot);
+            results.record(&call, slot);
             has_called = true;
         };
         if has_called {
@@ -112,7 +112,7 @@ impl<T: Target> Debugger<T> {
     pub(crate) fn type_of(&self, text: &str, detail: TypeDetail) -> Result<String, DebugError> {
         let spelled = |(probe, items): (Probe, Vec<Item>)| {
             let at = CallContext::new(self, None, &items);
-            let (value, shown) = (probe.type_only(), probe.shown(&at));
+            let (value, shown) = (probe.type_only(), probe.display_context(&at));
             match detail {
                 TypeDetail::Name => shown.type_of(&value),
                 TypeDetail::Members => shown.whole_type(&value),

@@ -43,7 +43,7 @@ impl<T: Target> Debugger<T> {
 
     /// Returns the reason for which a held context must stop, if there is one; `counts` is true except in a search of
     /// the past.
-    pub(super) fn judge(&mut self, hold: Hold, goal: &Goal, counts: bool) -> Option<Reason> {
+    pub(super) fn stop_reason(&mut self, hold: Hold, goal: &Goal, counts: bool) -> Option<Reason> {
         match hold.reason {
             HoldReason::Step => (*goal == Goal::Instruction(hold.context)).then_some(Reason::Step),
             HoldReason::Changed { index, by } => {

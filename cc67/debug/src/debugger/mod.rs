@@ -290,7 +290,7 @@ impl<T: Target> Debugger<T> {
     }
 
     /// Stops a thread.
-    pub fn kill(&mut self, thread: ThreadId) {
+    pub fn stop_thread(&mut self, thread: ThreadId) {
         self.session.stop(thread);
         self.changed();
     }

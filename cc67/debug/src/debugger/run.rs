@@ -302,7 +302,7 @@ impl<T: Target> Debugger<T> {
                 let _ = timeline.keep(&mut self.session);
             }
             if let Some(hold) = self.session.take_hold() {
-                if let Some(reason) = self.judge(hold, goal, true) {
+                if let Some(reason) = self.stop_reason(hold, goal, true) {
                     return self.stopped(reason, Some(hold.context));
                 }
                 active = self.session.target().active();
@@ -323,7 +323,7 @@ impl<T: Target> Debugger<T> {
             if self.session.tick() >= limit {
                 return self.stopped(Reason::Time, None);
             }
-            if let Some(reason) = self.session.target().lost() {
+            if let Some(reason) = self.session.target().loss_reason() {
                 let reason = Reason::LinkLost(reason.to_owned());
                 return self.stopped(reason, None);
             }

@@ -278,7 +278,7 @@ impl<T: Target> Debugger<T> {
             }
             let is_over = self.session.held().is_none() && self.session.tick() >= bound.tick;
             let reason = match (hold, wanted) {
-                (Some(hold), SearchTarget::Stop) => self.judge(hold, goal, false),
+                (Some(hold), SearchTarget::Stop) => self.stop_reason(hold, goal, false),
                 (Some(hold), SearchTarget::Instruction(context)) => {
                     (hold.context == *context).then_some(Reason::Step)
                 }

@@ -103,7 +103,7 @@ impl<T: Target> DebugReader for CallContext<'_, T> {
     fn local(&self, local: &LocalModel) -> Option<LocalPlace> {
         let view = self.view?;
         let register = |number: u16| view.registers.get(usize::from(number)).copied();
-        Some(match local.at(view.at.get())? {
+        Some(match local.location_at(view.at.get())? {
             Location::Register(number) => {
                 self.has_registers.set(true);
                 LocalPlace::Slot(register(number)?)
@@ -261,7 +261,7 @@ impl<T: Target> Debugger<T> {
     fn is_true(&self, prepared: &PreparedExpression, view: Option<&FrameView>) -> Result<bool, DebugError> {
         let at = CallContext::new(self, view, &prepared.items);
         let value = prepared.probe.value(&at)?;
-        Ok(prepared.probe.shown(&at).number(&value).is_some_and(|number| number != 0.0))
+        Ok(prepared.probe.display_context(&at).number(&value).is_some_and(|number| number != 0.0))
     }
 
     /// Returns whether the expression of a breakpoint is so at present; not where it has no value.
@@ -283,7 +283,7 @@ impl<T: Target> Debugger<T> {
         let view = self.view();
         let at = CallContext::new(self, view.as_ref(), &items);
         let value = probe.value(&at)?;
-        let worked = work(&probe, &value, &probe.shown(&at));
+        let worked = work(&probe, &value, &probe.display_context(&at));
         at.checked(worked)
     }
 
@@ -422,7 +422,7 @@ impl<T: Target> Debugger<T> {
             let bytes = probe.bytes_of(&place, number, &at);
             let bytes = bytes.ok_or_else(|| format!("`{expression}` takes no number"))?;
             let register = match (probe.as_local(), &view) {
-                (Some(local), Some(view)) => match local.at(view.at.get()) {
+                (Some(local), Some(view)) => match local.location_at(view.at.get()) {
                     Some(Location::Register(number)) => Some(number),
                     _ => None,
                 },
@@ -511,7 +511,7 @@ impl<T: Target> Debugger<T> {
         let mut at = CallContext::new(self, view.as_ref(), &prepared.items);
         at.reads = Some(RefCell::default());
         let value = prepared.probe.value(&at)?;
-        let shown = prepared.probe.shown(&at);
+        let shown = prepared.probe.display_context(&at);
         let last = shown.text(&value);
         let own = value.address().map(|address| (address, shown.size_of(&value)));
         let ranges = ranges(own, at.reads.as_ref().map(RefCell::take).unwrap_or_default());
@@ -528,7 +528,7 @@ impl<T: Target> Debugger<T> {
         let view = self.view_of(prepared);
         let at = CallContext::new(self, view.as_ref(), &prepared.items);
         let value = prepared.probe.value(&at).ok()?;
-        Some(prepared.probe.shown(&at).text(&value))
+        Some(prepared.probe.display_context(&at).text(&value))
     }
 
     /// Updates the values of watched expressions after any kind of change.

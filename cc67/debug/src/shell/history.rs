@@ -53,7 +53,7 @@ impl ShownValues {
     ///
     /// # Errors
     /// There is no such value.
-    pub(crate) fn alone(&self, expression: &str) -> Result<Option<KeptValue>, DebugError> {
+    pub(crate) fn value_by_name(&self, expression: &str) -> Result<Option<KeptValue>, DebugError> {
         let Some(word) = expression.trim().strip_prefix('$') else { return Ok(None) };
         let rest = word.strip_prefix('$').unwrap_or(word);
         let is_word = rest.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
@@ -179,7 +179,7 @@ mod tests {
             let found = history.replaced(text, Some(0x8005_0000));
             assert_eq!(found, expect.map(str::to_owned).map_err(DebugError::from), "{text}");
         }
-        let alone = |text| history.alone(text).expect(text).map(|value| value.text);
+        let alone = |text| history.value_by_name(text).expect(text).map(|value| value.text);
         assert_eq!(alone("$ "), Some("{...}".to_owned()));
         assert_eq!(alone("$none"), Some("void".to_owned()));
         assert_eq!(alone("$1 + 1"), None);

@@ -48,7 +48,7 @@ impl MemoryRequest {
                 'w' => request.form.size = 4,
                 'g' => request.form.size = 8,
                 'i' => request.form.letter = 'i',
-                _ if NumberFormat::of(letter).is_some() => request.form.letter = letter,
+                _ if NumberFormat::from_letter(letter).is_some() => request.form.letter = letter,
                 _ => return Err(format!("Undefined output format \"{letter}\".").into()),
             }
             has_size |= "bhwg".contains(letter);
@@ -105,7 +105,7 @@ impl<T: Target> Shell<T> {
 
     fn units(&self, address: u32, count: u32, form: MemoryForm) -> Result<String, DebugError> {
         let MemoryForm { letter, size, .. } = form;
-        let number = NumberFormat::of(letter).unwrap_or(NumberFormat::Hexadecimal);
+        let number = NumberFormat::from_letter(letter).unwrap_or(NumberFormat::Hexadecimal);
         let row = if size == 1 || size == 2 { 8 } else { LINE / size };
         let symbol = |at: GuestAddr| symbol_at(&self.debugger, at.get());
         let mut out = String::new();

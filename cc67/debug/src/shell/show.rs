@@ -81,7 +81,7 @@ impl<T: Target> Shell<T> {
             return if is_postfix { old } else { self.value_of(&place, format) };
         }
         if format.is_none()
-            && let Some(kept) = self.history.alone(expression)?
+            && let Some(kept) = self.history.value_by_name(expression)?
         {
             return Ok(kept);
         }
@@ -249,7 +249,7 @@ pub(super) fn format_of(rest: &str) -> (&str, &str) {
 pub(crate) fn format_of_letter(letters: &str) -> Result<Option<NumberFormat>, DebugError> {
     let mut meant = letters.chars().filter(|letter| !letter.is_ascii_digit() && !"bhwg".contains(*letter));
     let Some(letter) = meant.next() else { return Ok(None) };
-    let format = NumberFormat::of(letter);
+    let format = NumberFormat::from_letter(letter);
     format.map(Some).ok_or_else(|| format!("Undefined output format \"{letter}\".").into())
 }
 

@@ -76,7 +76,7 @@ impl Recording {
     }
 
     /// Adds an action that no statement expresses.
-    pub(super) fn cannot(&mut self, tick: Ticks, what: &str) {
+    pub(super) fn record_unsupported(&mut self, tick: Ticks, what: &str) {
         self.is_incomplete = true;
         if !self.is_off {
             let _ = writeln!(self.text, "# {}: no statement does this", statement(tick, what));
@@ -218,7 +218,7 @@ impl<T: Target> Session<T> {
             [0x1b, _, line @ .., b'\r'] if !line.contains(&b'\r') && line.is_ascii() => {
                 self.recording.add(tick, &format!("command {}", quoted(line)));
             }
-            _ => self.recording.cannot(tick, &format!("send the bytes {}", quoted(bytes))),
+            _ => self.recording.record_unsupported(tick, &format!("send the bytes {}", quoted(bytes))),
         }
         self.note(Input::Receive(bytes.to_vec()));
     }

@@ -23,7 +23,7 @@ impl WaitCondition {
         (first..=last).rev().find_map(|at| {
             let begin = find_word(lines.get(at)?, "while")? + "while".len();
             let rest = lines.get(at..)?.join(" ").get(begin..)?.trim_start().to_owned();
-            let inside = balanced(&rest)?;
+            let inside = parenthesized_text(&rest)?;
             let words = inside.split_whitespace().collect::<Vec<_>>().join(" ");
             let is_shown = words.chars().count() <= LONGEST && !is_endless(&words);
             is_shown.then_some(Self(words))
@@ -40,7 +40,7 @@ impl WaitCondition {
         let head = |at: usize, word: &str| {
             let begin = find_word(lines.get(at)?, word)? + word.len();
             let rest = lines.get(at..)?.join(" ").get(begin..)?.trim_start().to_owned();
-            balanced(&rest).map(|inside| inside.split_whitespace().collect::<String>())
+            parenthesized_text(&rest).map(|inside| inside.split_whitespace().collect::<String>())
         };
         let endless = (first..=last).rev().find_map(|at| {
             let of_while = head(at, "while").map(|condition| is_endless(&condition));
@@ -164,7 +164,7 @@ fn find_word(text: &str, word: &str) -> Option<usize> {
 }
 
 /// Returns the text between the parenthesis at the beginning and the one that closes it.
-fn balanced(text: &str) -> Option<&str> {
+fn parenthesized_text(text: &str) -> Option<&str> {
     let mut depth = 0_u32;
     for (at, c) in text.char_indices() {
         match c {

@@ -88,7 +88,7 @@ impl<T: Target> Session<T> {
             heard = StepEvents::default();
             let next = if condition.needs_every_tick() { self.tick().next() } else { limit };
             self.step(next.min(limit), &mut |event| {
-                condition.hear(&event, &mut heard);
+                condition.note_event(&event, &mut heard);
                 events(event);
             });
         }

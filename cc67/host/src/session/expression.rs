@@ -178,7 +178,7 @@ impl<T: Target> Session<T> {
         let tick = self.tick();
         match (user_data_at(address), <[u8; 4]>::try_from(&bytes[..])) {
             (Some(index), Ok(word)) => self.recording.stored(tick, index, i32::from_le_bytes(word)),
-            _ => self.recording.cannot(tick, &format!("write {value} to {text}")),
+            _ => self.recording.record_unsupported(tick, &format!("write {value} to {text}")),
         }
         self.note(Input::Store(address, bytes));
         Ok(())
@@ -369,7 +369,7 @@ impl<'a> Vocabulary<'a> {
         // A name in the program takes precedence over an item; so items are tried second.
         let item = |name: &str| Item::among(options.firmware.board().axes, name).ok();
         let mut names: Vec<&str> =
-            words(text).filter(|word| !symbols.contains_key(*word) && item(word).is_some()).collect();
+            identifiers(text).filter(|word| !symbols.contains_key(*word) && item(word).is_some()).collect();
         names.sort_unstable();
         names.dedup();
         if names.is_empty() {
@@ -384,7 +384,7 @@ impl<'a> Vocabulary<'a> {
 fn declarations(inspection: &Inspection) -> String {
     let mut text = "#include \"KMotionDef.h\"\n".to_owned();
     let objects = inspection.symbols.iter().filter(|entry| entry.kind == EntryKind::Object);
-    for entry in objects.filter(|entry| words(&entry.name).eq([entry.name.as_str()])) {
+    for entry in objects.filter(|entry| identifiers(&entry.name).eq([entry.name.as_str()])) {
         let symbol =
             inspection.image.symbols.iter().find(|symbol| symbol.name.as_bytes() == entry.name.as_bytes());
         let (ty, size) = match symbol.map(|symbol| kind_of(symbol.ty)) {
@@ -402,7 +402,7 @@ fn declarations(inspection: &Inspection) -> String {
 }
 
 /// Returns the parts of a text that have the form of an identifier.
-fn words(text: &str) -> impl Iterator<Item = &str> {
+fn identifiers(text: &str) -> impl Iterator<Item = &str> {
     text.split(|character: char| !(character.is_ascii_alphanumeric() || character == '_'))
 }
 
@@ -421,7 +421,7 @@ impl Formula for CompiledExpression {
 }
 
 /// The eight bytes at an address, padded at the end of a region.
-fn eight(memory: &vm::memory::GuestMemory, address: GuestAddr) -> [u8; 8] {
+fn eight_bytes(memory: &vm::memory::GuestMemory, address: GuestAddr) -> [u8; 8] {
     std::array::from_fn(|offset| memory.peek::<u8>(address.offset(offset as u32)))
 }
 
@@ -455,7 +455,7 @@ struct ViewContext<'a> {
 
 impl ItemReader for ViewContext<'_> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
-        eight(self.view.memory, address)
+        eight_bytes(self.view.memory, address)
     }
 
     fn item(&self, index: usize) -> f64 {

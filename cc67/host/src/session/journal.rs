@@ -94,7 +94,9 @@ impl<T: Target> Session<T> {
         let tick = self.tick();
         match (super::expression::user_data_at(address), <[u8; 4]>::try_from(bytes)) {
             (Some(index), Ok(word)) => self.recording.stored(tick, index, i32::from_le_bytes(word)),
-            _ => self.recording.cannot(tick, &format!("store {} bytes at {address}", bytes.len())),
+            _ => {
+                self.recording.record_unsupported(tick, &format!("store {} bytes at {address}", bytes.len()));
+            }
         }
         self.note(Input::Store(address, bytes.to_vec()));
         Ok(())

@@ -211,12 +211,12 @@ impl<T: Target> Session<T> {
         self.peek(self.target.place_of(address))
     }
 
-    /// A value in an object of the board's tables, if it is known [without an exchange](Target::glance).
+    /// A value in an object of the board's tables, if it is known [without an exchange](Target::peek).
     #[must_use]
     pub fn glance_at_object<S: Scalar>(&self, address: GuestAddr) -> Option<S> {
         let mut bytes = [0; 8];
         let wanted = bytes.get_mut(..S::SIZE as usize)?;
-        self.target.glance(self.target.place_of(address), wanted)?;
+        self.target.peek(self.target.place_of(address), wanted)?;
         S::get(&bytes, 0)
     }
 
@@ -317,7 +317,8 @@ impl<T: Target> Session<T> {
     pub fn load(&mut self, program: UserProgram) -> Result<(), HostError> {
         self.target.load(&program)?;
         let (thread, starts) = (program.thread, program.starts);
-        self.recording.cannot(self.target.tick(), &format!("load {} into thread {thread}", program.name()));
+        self.recording
+            .record_unsupported(self.target.tick(), &format!("load {} into thread {thread}", program.name()));
         self.note(Input::Load(Box::new(UserProgram { starts: false, ..program.clone() })));
         self.note_program(program);
         if starts { self.start(thread) } else { Ok(()) }

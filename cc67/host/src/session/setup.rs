@@ -60,7 +60,7 @@ impl Setup {
             board.start(program.thread).map_err(|_| HostError::NotLoaded(program.thread))?;
         }
         if is_assisted {
-            board.assist();
+            board.play_operator();
         }
         if !uart_input.is_empty() {
             board.send_to_uart(&uart_input);

@@ -273,7 +273,7 @@ impl<T: Target> Timeline<T> {
         if self.end > tick {
             self.leave(tick);
         }
-        self.forget(place);
+        self.drop_snapshot(place);
         self.journal.truncate(self.done);
         self.end = tick;
         // There was a snapshot at the beginning, so the target supports them.
@@ -403,7 +403,7 @@ impl<T: Target> Timeline<T> {
         self.marks.last().is_some_and(|mark| mark.place > place)
     }
 
-    fn forget(&mut self, place: u64) {
+    fn drop_snapshot(&mut self, place: u64) {
         self.marks.retain(|mark| mark.place <= place);
     }
 

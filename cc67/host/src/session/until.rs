@@ -39,7 +39,7 @@ impl Until {
     }
 
     /// Notes an event.
-    pub(super) fn hear(&self, event: &Event, heard: &mut StepEvents) {
+    pub(super) fn note_event(&self, event: &Event, heard: &mut StepEvents) {
         match &event.kind {
             EventKind::ConsoleLine(line) if self.listens() => heard.lines.push(line.clone()),
             EventKind::Trap(_) => heard.is_trapped = true,

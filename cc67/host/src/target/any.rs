@@ -116,7 +116,7 @@ impl Target for AnyTarget {
     delegate! {
         fn name(&self) -> &'static str;
         fn axes(&self) -> Axes;
-        fn lost(&self) -> Option<&str>;
+        fn loss_reason(&self) -> Option<&str>;
         fn can(&self, capability: Capability) -> bool;
         fn tick(&self) -> Ticks;
         fn now(&self) -> Cycles;
@@ -137,11 +137,11 @@ impl Target for AnyTarget {
         fn moving(&self) -> Vec<AxisId>;
         fn place_of(&self, address: GuestAddr) -> GuestAddr;
         fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError>;
-        fn glance(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()>;
+        fn peek(&self, address: GuestAddr, bytes: &mut [u8]) -> Option<()>;
         fn is_mapped(&self, address: GuestAddr) -> bool;
         fn word(&self, address: GuestAddr) -> Option<[u8; 8]>;
         fn unsent_lines(&self) -> Vec<Vec<u8>>;
-        fn knows(&self, item: Item) -> bool;
+        fn has_item(&self, item: Item) -> bool;
         fn value(&self, item: Item) -> f64;
         fn bit(&self, bit: Bit) -> bool;
         fn is_receiving(&self) -> bool;

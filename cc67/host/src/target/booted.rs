@@ -218,7 +218,7 @@ impl BootedTarget {
             match self.surroundings() {
                 _ if is_lost => self.report_loss(at, events),
                 // The simulated PC takes lines for files, and shows the others.
-                Some(surroundings) if is_console => surroundings.hear(line.text, at),
+                Some(surroundings) if is_console => surroundings.receive_line(line.text, at),
                 Some(_) | None => events(Event { at, kind: event_of(line) }),
             }
             self.deliver(events);
@@ -293,7 +293,7 @@ impl BootedTarget {
 
     /// Updates the periods without events after a tick.
     fn note_silence(&mut self, has_sent: bool) {
-        let (looks, has_read) = (self.board.looks(), self.board.has_read_all());
+        let (looks, has_read) = (self.board.poll_count(), self.board.has_read_all());
         self.state.answer.note(has_sent || !has_read, looks);
         let commands = self.commands();
         let moves = std::mem::replace(&mut self.state.commands, commands) != commands;
@@ -387,7 +387,7 @@ impl Target for BootedTarget {
     }
 
     fn has_ended(&self) -> bool {
-        self.state.halted.is_some() || self.state.rest.is_over(self.board.looks())
+        self.state.halted.is_some() || self.state.rest.is_over(self.board.poll_count())
     }
 
     fn turn(&self) -> SliceOwner {
@@ -432,7 +432,7 @@ impl Target for BootedTarget {
         self.board.file().function_at(address.get()).filter(|_| !is_program).map(|(name, _)| name)
     }
 
-    fn knows(&self, item: Item) -> bool {
+    fn has_item(&self, item: Item) -> bool {
         !item.is_only_modelled()
     }
 
@@ -464,7 +464,7 @@ impl Target for BootedTarget {
 
     fn receive(&mut self, bytes: &[u8]) {
         self.board.send(bytes);
-        self.state.answer = Silence { ticks: 0, looks: self.board.looks() };
+        self.state.answer = Silence { ticks: 0, looks: self.board.poll_count() };
         self.state.answer_until = self.board.cycle() + COMMAND;
         self.state.rest = self.state.answer;
     }
@@ -475,7 +475,7 @@ impl Target for BootedTarget {
 
     fn is_answering(&self) -> bool {
         let State { halted, answer, answer_until, .. } = &self.state;
-        halted.is_none() && !answer.is_over(self.board.looks()) && self.board.cycle() < *answer_until
+        halted.is_none() && !answer.is_over(self.board.poll_count()) && self.board.cycle() < *answer_until
     }
 
     fn exchange_ticks(&self) -> u64 {

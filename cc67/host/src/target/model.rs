@@ -117,7 +117,7 @@ impl<E: Engine> Target for Board<E> {
     }
 
     fn stop(&mut self, thread: ThreadId) {
-        self.kill([thread]);
+        self.stop_threads([thread]);
     }
 
     fn thread(&self, thread: ThreadId) -> &ThreadState {

@@ -36,13 +36,13 @@ impl<T: Target> ViewState<T> {
         self.clock.pause();
         let common = timeline.common_with(id).ok_or_else(gone)?;
         // The samples of re-executed ticks are added as they are executed.
-        let rows = self.samples.cut(common);
+        let rows = self.samples.truncate(common);
         timeline.take_branch(session, id).map_err(|error| error.to_string())?;
         self.note_branches();
-        self.log.put(entries);
+        self.log.replace(entries);
         self.pages.values_mut().for_each(|page| page.next_row = page.next_row.min(rows));
         self.broadcast(&json!({ "kind": "cut", "tick": common.get() }));
-        self.broadcast(&log_message(&self.log.later(common)));
+        self.broadcast(&log_message(&self.log.entries_after(common)));
         Ok(())
     }
 

@@ -61,7 +61,7 @@ impl<T: Target> ViewState<T> {
     pub(super) fn control(&mut self, session: &mut Session<T>, is_on: bool) {
         self.access.is_controlled = is_on;
         let said = if is_on { "control is on: pages can move the machine" } else { "control is off" };
-        self.log.say(session.tick(), EntrySource::Remark, said.to_owned());
+        self.log.add_message(session.tick(), EntrySource::Remark, said.to_owned());
         self.broadcast(&self.access.message());
         self.sample_on_controller(session);
     }
@@ -78,7 +78,7 @@ impl<T: Target> ViewState<T> {
             Ok(None) => return,
             Err(error) => format!("the scope has 20 samples a second: {error}"),
         };
-        self.log.say(session.tick(), EntrySource::Remark, said);
+        self.log.add_message(session.tick(), EntrySource::Remark, said);
     }
 
     /// Stops all threads and disables all axes.
@@ -93,7 +93,7 @@ impl<T: Target> ViewState<T> {
 
     /// Informs pages once that the link is lost.
     pub(super) fn tell_link(&mut self, session: &Session<T>) {
-        let lost = session.target().lost();
+        let lost = session.target().loss_reason();
         if lost.is_some() && self.access.lost.is_none() {
             self.access = PageAccess { lost: lost.map(str::to_owned), ..PageAccess::default() };
             self.broadcast(&self.access.message());

@@ -32,7 +32,7 @@ pub(super) fn files(show: &Show) -> Vec<PathBuf> {
 pub(super) fn sources(show: &Show) -> Value {
     let source = |path: PathBuf| {
         let bytes = fs::read(&path).ok()?;
-        Some(json!({ "file": path.display().to_string(), "text": names::decoded(&bytes) }))
+        Some(json!({ "file": path.display().to_string(), "text": names::decode_text(&bytes) }))
     };
     let sources: Vec<_> = files(show).into_iter().filter_map(source).collect();
     json!({ "kind": "sources", "sources": sources })
@@ -80,7 +80,7 @@ fn switches(show: &Show) -> Vec<Value> {
 /// The bits that programs or the machine use, each with a name.
 fn bits(show: &Show) -> Vec<Value> {
     let texts: Vec<String> =
-        files(show).iter().filter_map(|path| Some(names::decoded(&fs::read(path).ok()?))).collect();
+        files(show).iter().filter_map(|path| Some(names::decode_text(&fs::read(path).ok()?))).collect();
     let mut used = names::bits_of(&texts);
     let mut note = |bit: Bit, is_input: bool| {
         let entry: &mut UsedBit = used.entry(bit).or_default();

@@ -17,7 +17,7 @@ impl<T: Target> ViewState<T> {
     pub(super) fn keep(&mut self, session: &mut Session<T>) {
         let history = self.timeline.as_mut().map(|timeline| timeline.keep(session));
         if let Some(History::New(_)) = history {
-            self.cut(session);
+            self.discard_future(session);
         }
     }
 
@@ -44,16 +44,16 @@ impl<T: Target> ViewState<T> {
             && let Some(timeline) = &mut self.timeline
             && let History::New(_) = timeline.branch(session)
         {
-            self.cut(session);
+            self.discard_future(session);
         }
     }
 
     /// Discards everything after the present time.
-    fn cut(&mut self, session: &Session<T>) {
+    fn discard_future(&mut self, session: &Session<T>) {
         self.note_branches();
         let tick = session.tick();
-        self.log.cut(tick);
-        let rows = self.samples.cut(tick);
+        self.log.truncate(tick);
+        let rows = self.samples.truncate(tick);
         self.pages.values_mut().for_each(|page| page.next_row = page.next_row.min(rows));
         self.broadcast(&json!({ "kind": "cut", "tick": tick.get() }));
     }

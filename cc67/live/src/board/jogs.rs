@@ -80,7 +80,7 @@ impl<T: Target> ViewState<T> {
         for axis in ending {
             self.access.jogs.0.remove(&axis);
             if let Err(problem) = self.command(session, &format!("Jog{axis}=0")) {
-                self.log.say(session.tick(), super::EntrySource::Remark, problem);
+                self.log.add_message(session.tick(), super::EntrySource::Remark, problem);
             }
         }
     }

@@ -7,7 +7,7 @@ use kmotiondef::{CodeAddr, Cycles, ThreadId, Ticks};
 use runtime::{Event, EventKind, Remark, Speaker};
 use serde::Serialize;
 
-use crate::names::decoded;
+use crate::names::decode_text;
 
 /// The number of entries kept.
 const KEPT: usize = 5000;
@@ -65,7 +65,7 @@ pub(super) struct Log {
 
 impl Log {
     /// Adds a user's message.
-    pub(super) fn say(&mut self, tick: Ticks, voice: EntrySource, text: String) {
+    pub(super) fn add_message(&mut self, tick: Ticks, voice: EntrySource, text: String) {
         let seconds = tick.get() as f64 * kmotiondef::limits::TIMEBASE;
         self.add(LogEntry { tick: tick.get(), seconds, voice, text, file: None, line: None, accesses: None });
     }
@@ -76,10 +76,10 @@ impl Log {
         let (voice, text, place) = match &event.kind {
             EventKind::ConsoleLine(line) => (EntrySource::Console, text(line), None),
             EventKind::Reply(line) => (EntrySource::Reply, text(line), None),
-            EventKind::Trap(trap) => (EntrySource::Trap, words(session, event), Some(trap.at)),
-            EventKind::Remark(remark) => (EntrySource::Remark, words(session, event), remark.place),
+            EventKind::Trap(trap) => (EntrySource::Trap, event_text(session, event), Some(trap.at)),
+            EventKind::Remark(remark) => (EntrySource::Remark, event_text(session, event), remark.place),
             EventKind::Host(_) | EventKind::Unmet(_) | EventKind::Halted(_) => {
-                (EntrySource::Remark, words(session, event), None)
+                (EntrySource::Remark, event_text(session, event), None)
             }
             EventKind::Echo(_)
             | EventKind::Aborted
@@ -111,7 +111,7 @@ impl Log {
     }
 
     /// Drops the entries after a tick.
-    pub(super) fn cut(&mut self, tick: Ticks) {
+    pub(super) fn truncate(&mut self, tick: Ticks) {
         self.entries.retain(|entry| entry.tick <= tick.get());
         self.fresh = self.fresh.min(self.entries.len());
     }
@@ -128,12 +128,12 @@ impl Log {
     }
 
     /// Replaces the entries; pages receive the new ones separately.
-    pub(super) fn put(&mut self, entries: Vec<LogEntry>) {
+    pub(super) fn replace(&mut self, entries: Vec<LogEntry>) {
         (self.entries, self.fresh) = (entries.into(), 0);
     }
 
     /// The entries after a tick.
-    pub(super) fn later(&self, tick: Ticks) -> Vec<&LogEntry> {
+    pub(super) fn entries_after(&self, tick: Ticks) -> Vec<&LogEntry> {
         self.entries.iter().filter(|entry| entry.tick > tick.get()).collect()
     }
 
@@ -172,10 +172,10 @@ fn accesses<T: Target>(session: &Session<T>, remark: &Remark) -> Option<[RaceAcc
 }
 
 fn text(bytes: &[u8]) -> String {
-    decoded(bytes)
+    decode_text(bytes)
 }
 
-fn words<T: Target>(session: &Session<T>, event: &Event) -> String {
+fn event_text<T: Target>(session: &Session<T>, event: &Event) -> String {
     let programs: Vec<_> = session.debug().into_iter().map(|(_, debug)| debug).collect();
     remark::describe(event, &programs).unwrap_or_default()
 }

@@ -46,7 +46,7 @@ impl<T: Target> ViewState<T> {
             Err(text) => MachineState::Wrong(text),
         };
         if let Some(text) = self.machine_text() {
-            self.log.say(session.tick(), EntrySource::Remark, text);
+            self.log.add_message(session.tick(), EntrySource::Remark, text);
         }
         self.broadcast(&self.machine());
     }

@@ -93,7 +93,7 @@ pub(crate) fn run<T: Target>(
         state.take(session, requests, BEAT);
         state.stop_silent_jogs(session);
         state.advance(session, limit);
-        state.tell(session);
+        state.send_updates(session);
         if state.is_rebuild_wanted() {
             match check() {
                 Ok(()) => {
@@ -119,7 +119,7 @@ pub(crate) fn view<T: Target>(
 }
 
 /// Executes the requests in a page's messages, and reports the results to it.
-pub(crate) fn obey<T: Target>(
+pub(crate) fn execute_messages<T: Target>(
     session: &mut Session<T>,
     show: Show,
     messages: &[&str],
@@ -130,8 +130,8 @@ pub(crate) fn obey<T: Target>(
     state.join(session, id, Arc::default());
     let obeyed = messages.iter().map(|text| {
         let request = PageRequest::parse(text).map_err(|error| error.to_string());
-        let refused = request.and_then(|request| state.obey(session, id, request)).err();
-        state.tell(session);
+        let refused = request.and_then(|request| state.execute(session, id, request)).err();
+        state.send_updates(session);
         refused
     });
     obeyed.collect()
@@ -200,8 +200,8 @@ impl<T: Target> ViewState<T> {
         let list = if show.watch.is_empty() { SIGNALS } else { &show.watch };
         let mut log = Log::default();
         samples.follow(session, list, clock.speed());
-        for wrong in samples.wrong() {
-            log.say(
+        for wrong in samples.invalid_signals() {
+            log.add_message(
                 session.tick(),
                 EntrySource::Remark,
                 format!("the scope: {}: {}", wrong.name, wrong.text),
@@ -256,7 +256,7 @@ impl<T: Target> ViewState<T> {
                 self.stop_jogs_of(session, id);
             }
             Incoming::Ask(id, request) => {
-                if let Err(problem) = self.obey(session, id, request) {
+                if let Err(problem) = self.execute(session, id, request) {
                     self.answer(id, &json!({ "kind": "problem", "text": problem }));
                 }
             }
@@ -286,17 +286,17 @@ impl<T: Target> ViewState<T> {
         self.answer(id, &self.machine());
         self.answer(id, &log_message(&self.log.all()));
         self.answer(id, &json!({ "kind": "threads", "threads": threads::rows(session), "turns": [] }));
-        self.answer(id, &asks(self.told.open_box.as_ref()));
+        self.answer(id, &box_message(self.told.open_box.as_ref()));
     }
 
     fn signals(&self) -> Value {
         let (names, list) = (self.samples.names(), self.samples.list());
-        let (generation, wrong) = (self.samples.generation, self.samples.wrong());
+        let (generation, wrong) = (self.samples.generation, self.samples.invalid_signals());
         json!({ "kind": "signals", "generation": generation, "names": names, "list": list, "wrong": wrong })
     }
 
     /// Executes a request of a page.
-    fn obey(&mut self, session: &mut Session<T>, id: PageId, request: PageRequest) -> Result<(), String> {
+    fn execute(&mut self, session: &mut Session<T>, id: PageId, request: PageRequest) -> Result<(), String> {
         self.allows(&request)?;
         match request {
             PageRequest::Rate { frames } => {
@@ -339,7 +339,7 @@ impl<T: Target> ViewState<T> {
                 self.load(session, programs);
                 self.broadcast(&self.programs.message());
                 if let Some(refusal) = self.programs.refusal() {
-                    self.log.say(session.tick(), EntrySource::Remark, refusal.clone());
+                    self.log.add_message(session.tick(), EntrySource::Remark, refusal.clone());
                     return Err(refusal);
                 }
             }
@@ -349,7 +349,7 @@ impl<T: Target> ViewState<T> {
                 if self.may_load() {
                     self.sample_on_controller(session);
                 }
-                if let Some(wrong) = self.samples.wrong().first() {
+                if let Some(wrong) = self.samples.invalid_signals().first() {
                     return Err(format!("{}: {}", wrong.name, wrong.text));
                 }
             }
@@ -387,7 +387,7 @@ impl<T: Target> ViewState<T> {
 
     /// Sends script commands, as the PC does.
     fn command(&mut self, session: &mut Session<T>, line: &str) -> Result<(), String> {
-        self.log.say(session.tick(), EntrySource::Command, line.to_owned());
+        self.log.add_message(session.tick(), EntrySource::Command, line.to_owned());
         if self.is_real() {
             let mut events = Vec::new();
             session.exchange(line.as_bytes(), &mut |event| events.push(event));
@@ -438,7 +438,7 @@ impl<T: Target> ViewState<T> {
                 Err(error) => error.to_string(),
             };
             self.keep(session);
-            self.log.say(session.tick(), EntrySource::Remark, said);
+            self.log.add_message(session.tick(), EntrySource::Remark, said);
         }
     }
 
@@ -465,7 +465,7 @@ impl<T: Target> ViewState<T> {
         let looks = !self.pages.is_empty() && self.told.at.elapsed() >= THREADS;
         if let Some(mut attendant) = self.company.attendant.take() {
             attendant.advance(session, tick, &mut |event| events.push(event), &mut |session| {
-                self.tell(session);
+                self.send_updates(session);
                 ControlFlow::Continue(())
             });
             self.company.attendant = Some(attendant);
@@ -514,7 +514,7 @@ fn log_message(entries: &[&LogEntry]) -> Value {
 }
 
 /// The box that waits for an answer, as a message to pages.
-fn asks(open_box: Option<&OpenBox>) -> Value {
+fn box_message(open_box: Option<&OpenBox>) -> Value {
     let shown = open_box.map(|open_box| match open_box {
         OpenBox::Message { text, buttons } => json!({ "text": text, "buttons": buttons }),
         OpenBox::Input { text } => json!({ "text": text }),

@@ -51,7 +51,7 @@ impl Rows {
     }
 
     /// Drops the samples after a tick.
-    fn cut(&mut self, tick: Ticks) {
+    fn truncate(&mut self, tick: Ticks) {
         let limit = tick.get() as f64;
         let is_later = |row: &[f64]| row.first().is_some_and(|at| *at > limit);
         let later = self.numbers.rchunks(self.width.max(1)).take_while(|row| is_later(row)).count();
@@ -95,7 +95,7 @@ impl Samples {
         Self { interval: if is_real { EVERY_STATUS } else { EVERY }, ..Self::default() }
     }
 
-    /// Samples the signals of a list, except for the [invalid](Self::wrong) ones.
+    /// Samples the signals of a list, except for the [invalid](Self::invalid_signals) ones.
     pub(super) fn follow<T: Target>(&mut self, session: &mut Session<T>, list: &str, speed: f64) {
         let (mut watched, mut wrong) = (Vec::new(), Vec::new());
         for name in expressions(unquoted(list)).into_iter().map(unquoted).flat_map(parts) {
@@ -119,7 +119,7 @@ impl Samples {
     }
 
     /// The signals of the list that cannot be sampled.
-    pub(super) fn wrong(&self) -> &[WrongSignal] {
+    pub(super) fn invalid_signals(&self) -> &[WrongSignal] {
         &self.wrong
     }
 
@@ -167,9 +167,9 @@ impl Samples {
     }
 
     /// Drops the samples after a tick; returns the number of rows up to then.
-    pub(super) fn cut(&self, tick: Ticks) -> u64 {
+    pub(super) fn truncate(&self, tick: Ticks) -> u64 {
         let mut rows = locked(&self.rows);
-        rows.cut(tick);
+        rows.truncate(tick);
         rows.dropped + rows.count() as u64
     }
 

@@ -8,12 +8,12 @@ use serde_json::{Value, json};
 
 use super::clock::now;
 use super::frame::{self, FrameClock};
-use super::{BEAT, THREADS, ViewState, asks, log_message, threads};
+use super::{BEAT, THREADS, ViewState, box_message, log_message, threads};
 use crate::hub::PageId;
 
 impl<T: Target> ViewState<T> {
     /// Sends new information to pages.
-    pub(super) fn tell(&mut self, session: &Session<T>) {
+    pub(super) fn send_updates(&mut self, session: &Session<T>) {
         self.tell_link(session);
         let fresh = self.log.take_fresh();
         let entries = (!fresh.is_empty()).then(|| log_message(&fresh));
@@ -33,7 +33,7 @@ impl<T: Target> ViewState<T> {
             (self.told.threads, self.told.at) = (rows, now());
             let open_box = session.target().open_box();
             if open_box != self.told.open_box {
-                self.broadcast(&asks(open_box.as_ref()));
+                self.broadcast(&box_message(open_box.as_ref()));
                 self.told.open_box = open_box;
             }
         }

@@ -35,16 +35,16 @@ impl<T: Target> LiveView<T> {
     }
 
     /// Handles an event on the board.
-    pub fn hear(&mut self, session: &Session<T>, event: &Event) {
+    pub fn handle_event(&mut self, session: &Session<T>, event: &Event) {
         self.state.log.note(session, event);
     }
 
     /// Executes the requests of pages since the last call, without waiting, and sends new information to the pages.
     /// Must be called about a hundred times per second.
-    pub fn beat(&mut self, session: &mut Session<T>) -> OwnerRequests {
+    pub fn update(&mut self, session: &mut Session<T>) -> OwnerRequests {
         self.state.take(session, &self.requests, Duration::ZERO);
         self.state.stop_silent_jogs(session);
-        self.state.tell(session);
+        self.state.send_updates(session);
         let clock = &self.state.clock;
         let speed = clock.is_running().then(|| clock.speed());
         OwnerRequests { speed, ..std::mem::take(&mut self.state.owner_requests) }
@@ -52,7 +52,7 @@ impl<T: Target> LiveView<T> {
 
     /// Sends new information to pages at a time when requests are not allowed.
     pub fn show(&mut self, session: &Session<T>) {
-        self.state.tell(session);
+        self.state.send_updates(session);
     }
 
     /// Informs pages that the session is over.

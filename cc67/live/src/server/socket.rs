@@ -31,7 +31,7 @@ pub(super) fn serve(mut stream: TcpStream, key: &str, seat: &Seat, hub: &Arc<Hub
     stream.set_read_timeout(Some(TURN))?;
     let config = WebSocketConfig::default().max_message_size(Some(LONGEST)).max_frame_size(Some(LONGEST));
     let socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
-    seat.hear();
+    seat.mark_active();
     let (page, mailbox) = (hub.number(), Arc::new(Mailbox::default()));
     if hub.hand_in(Incoming::Join(page, Arc::clone(&mailbox))) {
         let mut connection = Connection { socket, seat, hub, page, mailbox: &mailbox };
@@ -95,7 +95,7 @@ impl Connection<'_> {
             };
             match message {
                 Message::Text(text) => {
-                    self.seat.hear();
+                    self.seat.mark_active();
                     let request = PageRequest::parse(&text)
                         .map_err(|error| ConnectionEnd::Broken(error.to_string()))?;
                     if !self.hub.hand_in(Incoming::Ask(self.page, request)) {

@@ -203,7 +203,7 @@ impl<T: Target> LoggedSession<T> {
 
     /// Returns the fault that stops a run now, if there is one.
     fn fault(&mut self) -> Option<Fault> {
-        if let Some(reason) = self.session.target().lost() {
+        if let Some(reason) = self.session.target().loss_reason() {
             return Some(Fault::Lost { text: reason.to_owned() });
         }
         if self.stops_at_faults { self.log.take_fault() } else { None }
@@ -232,7 +232,7 @@ impl<T: Target> LoggedSession<T> {
             }
             self.session.step(limit, &mut |event| events.push(event));
             // Most steps have no message.
-            if !events.is_empty() || self.session.target().lost().is_some() {
+            if !events.is_empty() || self.session.target().loss_reason().is_some() {
                 self.hear(std::mem::take(&mut events));
                 if let Some(fault) = self.fault() {
                     return PortionResult { is_over: true, is_met: false, fault: Some(fault) };

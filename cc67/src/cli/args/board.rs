@@ -245,7 +245,7 @@ pub(crate) fn read_machine_file(path: &Path, board: &'static TargetBoard) -> Res
     let mut machine = MachineFile::parse_for(board, &text)
         .map_err(|error| anyhow::anyhow!("{}:{}:{}: {error}", path.display(), error.line, error.column))?;
     machine.set_name(path);
-    machine.beside(path.parent().unwrap_or(Path::new("")));
+    machine.resolve_paths(path.parent().unwrap_or(Path::new("")));
     Ok(machine)
 }
 

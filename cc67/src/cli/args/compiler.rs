@@ -190,7 +190,7 @@ impl SourceArguments {
     pub(crate) fn levels(&self) -> Result<Levels> {
         let mut levels = Levels::default();
         if self.silent {
-            levels.silence();
+            levels.disable_all();
         }
         for switch in &self.warnings {
             levels.set(switch).with_context(|| format!("option `-W{switch}`"))?;

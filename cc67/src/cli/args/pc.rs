@@ -91,7 +91,7 @@ fn mcode(text: &str) -> Result<Vec<Setting>> {
     let first = words.next().unwrap_or_default().to_ascii_uppercase();
     let number = |word: &str| word.parse::<f32>().with_context(|| format!("`{word}` is not a number"));
     if let Some(speed) = first.strip_prefix('S') {
-        return Ok(vec![setting::single(variable, number(speed)?)?]);
+        return Ok(vec![setting::single_setting(variable, number(speed)?)?]);
     }
     let code: i32 =
         first.strip_prefix('M').and_then(|code| code.parse().ok()).context("there is no M code")?;
@@ -111,13 +111,16 @@ fn mcode(text: &str) -> Result<Vec<Setting>> {
     }
     if let Some(tool) = tool {
         // The slot, and behind it the tool's id; a tool table of the simplest kind has them equal.
-        return Ok(vec![setting::whole(variable, tool)?, setting::whole(variable + 1, tool)?]);
+        return Ok(vec![
+            setting::integer_setting(variable, tool)?,
+            setting::integer_setting(variable + 1, tool)?,
+        ]);
     }
     let given: Vec<f32> = parameters.into_iter().flatten().collect();
     if given.is_empty() {
-        return Ok(vec![setting::whole(variable, code)?]);
+        return Ok(vec![setting::integer_setting(variable, code)?]);
     }
-    (variable..).zip(given).map(|(element, value)| setting::single(element, value)).collect()
+    (variable..).zip(given).map(|(element, value)| setting::single_setting(element, value)).collect()
 }
 
 #[cfg(test)]

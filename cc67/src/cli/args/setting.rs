@@ -58,12 +58,12 @@ pub(crate) fn word(element: u32, word: u32) -> Result<Setting> {
 }
 
 /// A whole number in `persist.UserData`.
-pub(crate) fn whole(element: u32, value: i32) -> Result<Setting> {
+pub(crate) fn integer_setting(element: u32, value: i32) -> Result<Setting> {
     word(element, value.cast_unsigned())
 }
 
 /// A single in `persist.UserData`.
-pub(crate) fn single(element: u32, value: f32) -> Result<Setting> {
+pub(crate) fn single_setting(element: u32, value: f32) -> Result<Setting> {
     Ok(Setting { single: Some(element), ..word(element, value.to_bits())? })
 }
 
@@ -74,7 +74,7 @@ fn user_data() -> GuestAddr {
 
 /// A decimal or hexadecimal integer, `f:` a single, `d:` a double.
 fn bytes(value: &str) -> Result<Vec<u8>> {
-    let wrong = || anyhow!("{}", wanted(value));
+    let wrong = || anyhow!("{}", suggest_spelling(value));
     if let Some(single) = value.strip_prefix(SINGLE) {
         return Ok(single.parse::<f32>().map_err(|_| wrong())?.to_le_bytes().into());
     }
@@ -95,7 +95,7 @@ fn bytes(value: &str) -> Result<Vec<u8>> {
 }
 
 /// Suggests a valid spelling in place of an invalid value.
-fn wanted(value: &str) -> String {
+fn suggest_spelling(value: &str) -> String {
     let plain = value.trim_start_matches("f:").trim_start_matches("d:").replace(',', ".");
     match plain.parse::<f64>() {
         Ok(_) => format!(

@@ -16,7 +16,7 @@ use kmotiondef::timing::Timing;
 use crate::cli::args::board::read_machine_file;
 use crate::cli::args::compiler::SourceArguments;
 use crate::cli::args::program::{ProgramFile, assign, names_thread};
-use crate::cli::args::sidecars::{Head, PROJECT_FILE, Project, within};
+use crate::cli::args::sidecars::{Head, PROJECT_FILE, Project, resolve_file};
 use crate::cli::args::stimulus;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::{files_below, is_source, read};
@@ -97,7 +97,7 @@ fn is_description(file: &OsString) -> bool {
 fn check_description(file: &OsStr, board: &'static TargetBoard) -> Result<()> {
     let path = Path::new(file);
     if path.file_name() == Some(OsStr::new(PROJECT_FILE)) {
-        return Project::above(path.parent().unwrap_or(Path::new(""))).map(|_| ());
+        return Project::find_above(path.parent().unwrap_or(Path::new(""))).map(|_| ());
     }
     if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("stim")) {
         return stimulus::read(&[file.to_string_lossy().into_owned()]).map(|_| ());
@@ -120,7 +120,7 @@ impl CheckArguments {
 /// The programs to check, and those of them that run together; those of the project file if none is named.
 fn programs(named: Vec<OsString>) -> Result<(Vec<PathBuf>, Vec<Vec<ProgramFile>>)> {
     let of_project = || -> Result<Vec<OsString>> {
-        match Project::above(Path::new(""))? {
+        match Project::find_above(Path::new(""))? {
             Some(project) if !project.programs().is_empty() => Ok(project.programs().to_vec()),
             _ => {
                 bail!("no FILE given, and no cc67.toml here or above with `programs = [\"1:main.c\", …]`")
@@ -177,6 +177,6 @@ fn group_of(path: &Path) -> Result<Option<Vec<ProgramFile>>> {
         Head::Part | Head::None => Vec::new(),
     };
     let folder = path.parent().unwrap_or(Path::new(""));
-    let also = also.iter().map(|program| within(folder, program));
+    let also = also.iter().map(|program| resolve_file(folder, program));
     assign(&once(path.as_os_str().to_owned()).chain(also).collect::<Vec<_>>()).map(Some)
 }

@@ -131,7 +131,7 @@ fn plural(count: usize) -> String {
 }
 
 /// Splits `1:A+2:B` into two programs.
-fn together(program: &OsString) -> Result<Vec<OsString>> {
+fn split_programs(program: &OsString) -> Result<Vec<OsString>> {
     let text = program.to_str().with_context(|| format!("{} is not text", program.display()))?;
     Ok(text.split('+').map(OsString::from).collect())
 }
@@ -151,7 +151,7 @@ impl CompareArguments {
 
     /// The arguments with the files next to a program, and the programs of its run.
     fn of(&self, program: &OsString) -> Result<(Box<Self>, Vec<OsString>)> {
-        let mut programs = together(program)?;
+        let mut programs = split_programs(program)?;
         let at = self.words.iter().position(|word| word == "compare").map_or(0, |at| at + 1);
         let (before, given) = self.words.split_at(at);
         let given: Vec<OsString> =
@@ -159,7 +159,7 @@ impl CompareArguments {
         let mut options = Vec::new();
         if !self.sidecars.no_sidecar {
             let sidecars =
-                Sidecars::of("compare", &programs, &given, |option| super::knows("compare", option))?;
+                Sidecars::of("compare", &programs, &given, |option| super::is_option_of("compare", option))?;
             options = sidecars.options;
             programs.extend(sidecars.also);
         }
@@ -229,13 +229,13 @@ impl CompareArguments {
         Ok(if is_equal { Verdict::Equal } else { Verdict::Unequal })
     }
 
-    fn started<'a>(&'a self, programs: &'a [OsString]) -> StartPlan<'a> {
+    fn start_plan<'a>(&'a self, programs: &'a [OsString]) -> StartPlan<'a> {
         StartPlan { programs, first: &self.sidecars.first }
     }
 
     /// The run on the modelled board; `None` if a source has errors.
     fn model(&self, programs: &[OsString]) -> Result<Option<Outcome>> {
-        let setup = Setup::of_model(self.started(programs), &self.board, &self.compiler)?;
+        let setup = Setup::of_model(self.start_plan(programs), &self.board, &self.compiler)?;
         let Some(setup) = setup else { return Ok(None) };
         let mut outcome = Outcome::default();
         setup.on_its_target(Model { limit: self.ticks(), outcome: &mut outcome })?;
@@ -244,7 +244,7 @@ impl CompareArguments {
 
     /// The run on the connected controller; `None` if a source has errors.
     fn controller(&self, programs: &[OsString]) -> Result<Option<Outcome>> {
-        let setup = Setup::new(self.started(programs), &self.board, &self.compiler)?;
+        let setup = Setup::new(self.start_plan(programs), &self.board, &self.compiler)?;
         let Some(setup) = setup else { return Ok(None) };
         let mut outcome = Outcome::default();
         setup.recorded().on_its_target(OnController { limit: self.ticks(), outcome: &mut outcome })?;
@@ -261,9 +261,9 @@ impl CompareArguments {
         firmware: &BootedFirmware,
         at: Ticks,
     ) -> Result<Option<Outcome>> {
-        let setup = Setup::of_firmware(self.started(programs), &self.board, &self.compiler, firmware)?;
+        let setup = Setup::of_firmware(self.start_plan(programs), &self.board, &self.compiler, firmware)?;
         let Some(setup) = setup else { return Ok(None) };
-        let mut rig = setup.rig_of_firmware(firmware)?;
+        let mut board = setup.firmware_session(firmware)?;
         let mut outcome = Outcome::default();
         let mut crash = None;
         let mut note = |outcome: &mut Outcome, event: &Event| {
@@ -274,29 +274,29 @@ impl CompareArguments {
         };
         // The model's run ended before the tick that the firmware has just begun.
         let until = Ticks::new(at.get() + 1).min(self.ticks());
-        let axes = |rig: &BoardSession<BootedTarget>| rig.session.target().axes();
-        let mut before = axes(&rig);
-        while rig.session.tick() < until {
-            rig.session.step_tick(&mut |event| note(&mut outcome, &event));
-            before = std::mem::replace(&mut outcome.axes, axes(&rig));
+        let axes = |board: &BoardSession<BootedTarget>| board.session.target().axes();
+        let mut before = axes(&board);
+        while board.session.tick() < until {
+            board.session.step_tick(&mut |event| note(&mut outcome, &event));
+            before = std::mem::replace(&mut outcome.axes, axes(&board));
         }
         let ticks = self.tolerance / TIMEBASE;
         let step = |(now, before): (&(f64, f64), &(f64, f64))| (now.0 - before.0).abs() * ticks;
         outcome.reach = outcome.axes.iter().zip(&before).map(step).collect();
         let rest = Ticks::new(until.get() + REST).min(self.ticks());
-        rig.advance(rest, &mut |event| note(&mut outcome, &event));
-        let end = rig.run(self.ticks(), None, &mut |event| note(&mut outcome, &event));
-        outcome.last_axes = axes(&rig);
-        rig.finish(&mut |event| note(&mut outcome, &event))?;
-        outcome.end = crash.unwrap_or_else(|| ended(&rig.session, end).to_owned());
-        outcome.look_at_firmware(&rig.session);
+        board.advance(rest, &mut |event| note(&mut outcome, &event));
+        let end = board.run(self.ticks(), None, &mut |event| note(&mut outcome, &event));
+        outcome.last_axes = axes(&board);
+        board.finish(&mut |event| note(&mut outcome, &event))?;
+        outcome.end = crash.unwrap_or_else(|| describe_end(&board.session, end).to_owned());
+        outcome.look_at_firmware(&board.session);
         Ok(Some(outcome))
     }
 }
 
 /// Describes how the programs of a run ended. An axis that still creeps towards its target does not count as running:
 /// after `MoveExp` the boards reach the target in different ticks.
-fn ended<T: Target>(session: &Session<T>, end: End) -> &'static str {
+fn describe_end<T: Target>(session: &Session<T>, end: End) -> &'static str {
     let is_active = |thread| session.target().thread(thread).is_active();
     match end {
         End::Limit if ThreadId::all().any(is_active) => STILL_RUNNING,
@@ -311,20 +311,20 @@ struct OnController<'a> {
 }
 
 impl Work for OnController<'_> {
-    fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
+    fn on<T: Target>(self, mut board: BoardSession<T>) -> Result<Exit> {
         let outcome = self.outcome;
-        outcome.look_before(&rig.session);
+        outcome.look_before(&board.session);
         let mut sink = |event: Event| {
             // Messages of cc67 about its own work do not belong to the program.
             if !matches!(event.kind, EventKind::Host(_)) {
                 outcome.note(&event);
             }
         };
-        let end = run_with_boxes(&mut rig, self.limit, &mut sink)?;
-        rig.finish(&mut sink)?;
-        outcome.end = ended(&rig.session, end).to_owned();
-        outcome.look_at_model(&rig);
-        if let Some(why) = rig.session.target().lost() {
+        let end = run_with_boxes(&mut board, self.limit, &mut sink)?;
+        board.finish(&mut sink)?;
+        outcome.end = describe_end(&board.session, end).to_owned();
+        outcome.look_at_model(&board);
+        if let Some(why) = board.session.target().loss_reason() {
             bail!("{why}");
         }
         Ok(Exit::Success)
@@ -338,7 +338,7 @@ struct Model<'a> {
 }
 
 impl Work for Model<'_> {
-    fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
+    fn on<T: Target>(self, mut board: BoardSession<T>) -> Result<Exit> {
         let outcome = self.outcome;
         let mut traps = Vec::new();
         let mut sink = |event: Event| {
@@ -347,17 +347,17 @@ impl Work for Model<'_> {
             }
             outcome.note(&event);
         };
-        let end = rig.run(self.limit, None, &mut sink);
-        rig.finish(&mut |event| {
+        let end = board.run(self.limit, None, &mut sink);
+        board.finish(&mut |event| {
             if matches!(event.kind, EventKind::Unmet(_)) {
                 outcome.note(&event);
             }
         })?;
         outcome.end = match (traps.first(), end) {
             (Some(trap), _) => trap.clone(),
-            (None, end) => ended(&rig.session, end).to_owned(),
+            (None, end) => describe_end(&board.session, end).to_owned(),
         };
-        outcome.look_at_model(&rig);
+        outcome.look_at_model(&board);
         Ok(Exit::Success)
     }
 }

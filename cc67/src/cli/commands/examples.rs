@@ -43,7 +43,7 @@ pub(super) fn examples(arguments: &ExamplesArguments) -> Result<Exit> {
     let path = find(name)?;
     let stem = stem(path);
     if arguments.print {
-        output::print(&alone(path, &mut BTreeSet::new()))?;
+        output::print(&inline_includes(path, &mut BTreeSet::new()))?;
         return Ok(Exit::Success);
     }
     let files: Vec<_> =
@@ -118,7 +118,7 @@ pub(super) fn copy(path: &str, name: &str) -> Vec<Copy> {
         text.replace(&format!("{}.c", stem(path)), &format!("{name}.c"))
             .replace(&format!("c-programs/{folder}/"), "")
     };
-    let source = renamed(alone(path, &mut BTreeSet::new()));
+    let source = renamed(inline_includes(path, &mut BTreeSet::new()));
     let mut files = vec![(format!("{name}.c"), source.clone().into_bytes())];
     for suffix in ["toml", "stim", "expected"] {
         if let Some(bytes) = content(&format!("{own}.{suffix}")) {
@@ -128,7 +128,7 @@ pub(super) fn copy(path: &str, name: &str) -> Vec<Copy> {
     if let Ok(Head::Run { also, .. }) = Head::parse(source.lines().next().unwrap_or_default()) {
         for program in also {
             let file = program.rsplit(':').next().unwrap_or(&program).to_owned();
-            let text = alone(&join(folder, &file), &mut BTreeSet::new());
+            let text = inline_includes(&join(folder, &file), &mut BTreeSet::new());
             files.push((file, text.into_bytes()));
         }
     }
@@ -161,7 +161,7 @@ pub(super) fn topic(path: &str, name: &str) -> Result<Vec<Copy>> {
 }
 
 /// A source with the contents of its includes, each file once; the board's header remains an include.
-fn alone(path: &str, seen: &mut BTreeSet<String>) -> String {
+fn inline_includes(path: &str, seen: &mut BTreeSet<String>) -> String {
     let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
     let source = String::from_utf8_lossy(content(path).unwrap_or_default()).into_owned();
     let mut text = String::new();
@@ -169,7 +169,7 @@ fn alone(path: &str, seen: &mut BTreeSet<String>) -> String {
         let included = line.trim().strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"'));
         let file = included.map(|name| join(folder, name));
         match file.filter(|file| content(file).is_some()) {
-            Some(file) if seen.insert(file.clone()) => text.push_str(&alone(&file, seen)),
+            Some(file) if seen.insert(file.clone()) => text.push_str(&inline_includes(&file, seen)),
             Some(_) => {}
             None => {
                 text.push_str(line);

@@ -49,7 +49,7 @@ pub(super) fn explain(name: &str) -> Result<Exit> {
         Some(text) => text,
         None => match bits::answer(name)? {
             Some(text) => text,
-            None => found(name)?,
+            None => search_names(name)?,
         },
     };
     output::print(&text)?;
@@ -90,13 +90,13 @@ fn list(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
         ("variables", places::variables),
         ("commands", commands::list),
         ("bits", bits::list),
-        ("topics", everything),
+        ("topics", list_all),
     ];
     LISTS.iter().find(|(name, _)| is_meant(name)).map(|(_, text)| text())
 }
 
 /// Lists all that can be explained: topics, lists, and the kinds of names.
-fn everything() -> String {
+fn list_all() -> String {
     let mut text = "Topics:\n".to_owned();
     for entry in topics::entries() {
         let _ = writeln!(text, "  {:<12}{}", entry.name, entry.about);
@@ -119,7 +119,7 @@ fn everything() -> String {
 }
 
 fn warning(name: &str) -> Option<String> {
-    let lint = Lint::named(name).ok()?;
+    let lint = Lint::from_name(name).ok()?;
     Some(format!("{}\n{}", lint.page(), lint.switches()))
 }
 
@@ -175,7 +175,7 @@ fn entries() -> Vec<ExplainedName> {
 }
 
 /// The names whose sentences contain a word; without any, the name that was probably meant.
-fn found(word: &str) -> Result<String> {
+fn search_names(word: &str) -> Result<String> {
     const MOST: usize = 20;
     const LEAST: usize = 4;
     let entries = entries();

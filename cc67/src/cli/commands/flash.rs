@@ -72,8 +72,8 @@ pub(super) fn flash(arguments: &FlashArguments) -> Result<Exit> {
     let files = program::assign(&arguments.programs)?;
     let Some(programs) = images::programs(&files, compiler, &options)? else { return Ok(Exit::Failure) };
     require_rest(&mut connection, address)?;
-    terminal::aside(&arguments.plan(&connection, &programs));
-    if !arguments.yes && !controller::agrees("Write flash?")? {
+    terminal::print_separated(&arguments.plan(&connection, &programs));
+    if !arguments.yes && !controller::ask_user("Write flash?")? {
         terminal::note("nothing was changed");
         return Ok(Exit::Failure);
     }

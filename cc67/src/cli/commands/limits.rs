@@ -152,7 +152,7 @@ pub const ALL: [(&str, &[Limit]); 4] = [
 
 /// A number with separated thousands.
 #[must_use]
-pub fn grouped(number: u64) -> String {
+pub fn with_separators(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {
@@ -171,7 +171,7 @@ pub fn page() -> String {
     for (title, limits) in ALL {
         let _ = write!(text, "{title}\n\n");
         for limit in limits {
-            let _ = writeln!(text, "{:>13}  {}: {}", grouped(limit.number), limit.what, limit.beyond);
+            let _ = writeln!(text, "{:>13}  {}: {}", with_separators(limit.number), limit.what, limit.beyond);
         }
         text.push('\n');
     }

@@ -254,7 +254,7 @@ fn command(arguments: Vec<OsString>) -> ExitCode {
 fn with_programs_of_project(error: &clap::Error, words: &[OsString]) -> Option<Vec<OsString>> {
     let is_without = error.kind() == ErrorKind::MissingRequiredArgument
         && ["run", "live", "debug"].iter().any(|name| words.get(1).is_some_and(|word| word == name));
-    let project = is_without.then(|| Project::above(Path::new(""))).and_then(Result::ok).flatten()?;
+    let project = is_without.then(|| Project::find_above(Path::new(""))).and_then(Result::ok).flatten()?;
     (!project.programs().is_empty()).then(|| [words, project.programs()].concat())
 }
 
@@ -290,7 +290,7 @@ impl Arguments {
         };
         let (sidecars, line) = match (programs, &self.command) {
             (Some(programs), _) => {
-                let sidecars = Sidecars::of(name, programs, words, |option| knows(name, option))?;
+                let sidecars = Sidecars::of(name, programs, words, |option| is_option_of(name, option))?;
                 let line = programs.first().and_then(|program| sidecars.line(program));
                 (sidecars, line)
             }
@@ -320,11 +320,11 @@ impl Arguments {
 
 /// Returns the options of the project file for the sources of a subcommand.
 fn of_sources(subcommand: &str, first: Option<&OsStr>) -> Result<Sidecars> {
-    Sidecars::of_sources(first, |option| knows(subcommand, option))
+    Sidecars::of_sources(first, |option| is_option_of(subcommand, option))
 }
 
 /// Returns whether a subcommand has an option, by its long or short name.
-fn knows(subcommand: &str, option: &str) -> bool {
+fn is_option_of(subcommand: &str, option: &str) -> bool {
     description().find_subcommand(subcommand).is_some_and(|subcommand| has_option(subcommand, option))
 }
 
@@ -347,7 +347,7 @@ fn advice(error: &clap::Error, words: &[OsString]) -> Option<String> {
     if let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg)
         && error.kind() == ErrorKind::UnknownArgument
     {
-        return elsewhere(option, words);
+        return other_subcommands(option, words);
     }
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else { return None };
     let path = Path::new(word);
@@ -361,7 +361,7 @@ fn advice(error: &clap::Error, words: &[OsString]) -> Option<String> {
 }
 
 /// Returns the subcommands that have an option which the one in `words` lacks.
-fn elsewhere(option: &str, words: &[OsString]) -> Option<String> {
+fn other_subcommands(option: &str, words: &[OsString]) -> Option<String> {
     let command = description();
     let is_subcommand = |word: &&OsString| command.get_subcommands().any(|known| **word == *known.get_name());
     let used = words.iter().skip(1).find(is_subcommand)?.to_str()?;

@@ -70,10 +70,10 @@ pub(super) struct RunArguments {
 /// Compiles, loads and runs the programs.
 pub(super) fn run(arguments: &RunArguments) -> Result<Exit> {
     if arguments.explore.is_requested() {
-        let make = || Setup::new(arguments.started(), &arguments.board, &arguments.compiler);
+        let make = || Setup::new(arguments.start_plan(), &arguments.board, &arguments.compiler);
         return arguments.explore.explore(arguments.ticks(), arguments.limit.is_some(), make);
     }
-    let setup = Setup::new(arguments.started(), &arguments.board, &arguments.compiler)?;
+    let setup = Setup::new(arguments.start_plan(), &arguments.board, &arguments.compiler)?;
     match setup {
         Some(setup) => run_setup(arguments, setup),
         None => {
@@ -105,24 +105,24 @@ fn run_profiled(arguments: &RunArguments, setup: Setup, target: &str) -> Result<
     let target = profile::target(target)?;
     let (exit, report) = match setup.firmware() {
         Some(firmware) => {
-            let mut rig = setup.rig_of_firmware(&firmware)?;
-            rig.session.sample_processor();
-            let exit = arguments.execute(&mut rig)?;
-            (exit, SampledBoard::of(&rig.session).report(&target)?)
+            let mut board = setup.firmware_session(&firmware)?;
+            board.session.sample_processor();
+            let exit = arguments.execute(&mut board)?;
+            (exit, SampledBoard::of(&board.session).report(&target)?)
         }
         None => {
-            let mut rig = setup.rig(ProfilingEngine::default())?;
-            let exit = arguments.execute(&mut rig)?;
-            (exit, profile::report(rig.session.target(), &target)?)
+            let mut board = setup.modelled_session(ProfilingEngine::default())?;
+            let exit = arguments.execute(&mut board)?;
+            (exit, profile::report(board.session.target(), &target)?)
         }
     };
-    terminal::aside(&report);
+    terminal::print_separated(&report);
     Ok(exit)
 }
 
 impl Work for &RunArguments {
-    fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
-        self.execute(&mut rig)
+    fn on<T: Target>(self, mut board: BoardSession<T>) -> Result<Exit> {
+        self.execute(&mut board)
     }
 }
 
@@ -133,7 +133,7 @@ impl RunArguments {
     }
 
     /// The programs and the order in which they start.
-    fn started(&self) -> StartPlan<'_> {
+    fn start_plan(&self) -> StartPlan<'_> {
         StartPlan { programs: &self.programs, first: &self.sidecars.first }
     }
 
@@ -145,20 +145,20 @@ impl RunArguments {
     }
 
     /// Runs the board and shows the events.
-    fn execute<T: Target>(&self, rig: &mut BoardSession<T>) -> Result<Exit> {
-        let request = trace::request(&self.trace, &rig.session)?;
-        let (programs, offered) = (rig.session.debug(), rig.session.offered());
+    fn execute<T: Target>(&self, board: &mut BoardSession<T>) -> Result<Exit> {
+        let request = trace::request(&self.trace, &board.session)?;
+        let (programs, offered) = (board.session.debug(), board.session.offered());
         let mut screen = Screen::new(BufWriter::new(io::stdout().lock()), self.style(), programs, offered);
         if let Some(request) = &request {
-            rig.session.record(request.clone());
+            board.session.record(request.clone());
         }
         let is_connected = self.board.controller.on.is_some();
         let begin = |request| Trace::begin(&self.trace, request, is_connected);
         let mut trace = request.as_ref().map(begin).transpose()?;
-        rig.connect()?;
+        board.connect()?;
         let mut seen = Failures::default();
         let limit = self.ticks();
-        let pace = self.realtime.then(|| Pace::new(rig.session.tick()));
+        let pace = self.realtime.then(|| Pace::new(board.session.tick()));
         let mut sink = |event| {
             if let Some(trace) = &mut trace {
                 trace.note(&event);
@@ -166,16 +166,16 @@ impl RunArguments {
             seen.note(&event);
             screen.show(&event);
         };
-        interrupt::ends(rig.session.interrupter())?;
+        interrupt::end_on_interrupt(board.session.interrupter())?;
         let end = match is_connected {
-            true => run_with_boxes(rig, limit, &mut sink)?,
-            false => rig.run(limit, pace.as_ref(), &mut sink),
+            true => run_with_boxes(board, limit, &mut sink)?,
+            false => board.run(limit, pace.as_ref(), &mut sink),
         };
         if is_connected && end == End::Interrupted {
-            controller::stop(&mut rig.session, &mut sink);
+            controller::stop(&mut board.session, &mut sink);
         }
-        rig.finish(&mut sink)?;
-        let (session, ending) = (&rig.session, rig.session.ending());
+        board.finish(&mut sink)?;
+        let (session, ending) = (&board.session, board.session.ending());
         let (exit, why) = seen.exit(end, self.limit.is_some());
         let active = active(session);
         // The 2,000 bits are read only if the result is shown.
@@ -197,7 +197,7 @@ impl RunArguments {
             state.lines().iter().for_each(|line| terminal::note(line));
         }
         self.say_what_was_not_split(session);
-        if let Some(why) = session.target().lost() {
+        if let Some(why) = session.target().loss_reason() {
             anyhow::bail!("{why}");
         }
         if let Some(how) = how_it_ended(exit, session, &ending) {
@@ -221,7 +221,7 @@ impl RunArguments {
             None => return,
         };
         // The message concerns the run; it is not a remark of the board.
-        terminal::aside(&format!(
+        terminal::print_separated(&format!(
             "note: {who}. Statements were not split; `--as board` splits them as the board does, `--races` names the \
              lines that can go wrong\n"
         ));

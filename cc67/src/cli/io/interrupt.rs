@@ -21,7 +21,7 @@ pub(crate) fn sets(flag: &Arc<AtomicBool>) -> Result<()> {
 }
 
 /// Makes Ctrl-C, or a request to terminate, end a run.
-pub(crate) fn ends(run: Interrupter) -> Result<()> {
+pub(crate) fn end_on_interrupt(run: Interrupter) -> Result<()> {
     let was_pressed = AtomicBool::new(false);
     let end = move || match was_pressed.swap(true, Ordering::Relaxed) {
         true => process::exit(Exit::Interrupted as i32),

@@ -48,7 +48,7 @@ pub(crate) fn note(message: &str) {
 }
 
 /// Prints a text of cc67's own to stderr, separated from the console.
-pub(crate) fn aside(text: &str) {
+pub(crate) fn print_separated(text: &str) {
     write(text);
 }
 

@@ -25,6 +25,6 @@ pub(crate) fn report(compilation: &Compilation, levels: &Levels, format: Format)
     let shown: Vec<_> =
         compilation.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic)).collect();
     let text = render::render(&shown, &compilation.sources, format, terminal::color(&io::stderr()));
-    terminal::aside(&text);
+    terminal::print_separated(&text);
     shown.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
 }

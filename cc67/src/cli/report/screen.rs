@@ -288,17 +288,17 @@ impl<W: Write> Screen<W> {
             EventKind::Loaded(thread, name) => self.replace(*thread, name),
             EventKind::Remark(remark) if remark.message.severity() == Severity::Detail => {
                 if self.style.is_verbose {
-                    self.say(event, &remark::words(remark, &self.programs));
+                    self.print_text(event, &remark::remark_text(remark, &self.programs));
                 }
             }
             EventKind::Remark(remark @ Remark { message: Message::UndrivenInput { bit, level }, .. })
                 if !self.style.json && !self.style.is_live =>
             {
-                self.undriven.push((remark::who(remark, &self.programs), *bit, *level));
+                self.undriven.push((remark::subject_text(remark, &self.programs), *bit, *level));
             }
             _ => {
                 if let Some(text) = remark::describe(event, &self.programs) {
-                    self.say(event, &text);
+                    self.print_text(event, &text);
                 }
             }
         }
@@ -318,7 +318,7 @@ impl<W: Write> Screen<W> {
     }
 
     /// Shows a text that is not program output.
-    fn say(&mut self, event: &Event, text: &str) {
+    fn print_text(&mut self, event: &Event, text: &str) {
         let is_trap = matches!(event.kind, EventKind::Trap(_) | EventKind::Halted(_));
         *(if is_trap { &mut self.traps } else { &mut self.remarks }) += 1;
         if !self.style.json {
@@ -331,7 +331,7 @@ impl<W: Write> Screen<W> {
             self.keep(flushed);
             terminal::note(text);
             if let Some(scene) = remark::scene(event) {
-                terminal::aside(&scene.to_string());
+                terminal::print_separated(&scene.to_string());
             }
             return;
         }

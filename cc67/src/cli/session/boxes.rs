@@ -27,19 +27,19 @@ struct BoxUser {
 
 /// Runs until everything has ended, or to the limit, and asks the user at the terminal for answers to boxes.
 pub(crate) fn run_with_boxes<T: Target>(
-    rig: &mut BoardSession<T>,
+    board: &mut BoardSession<T>,
     limit: Ticks,
     sink: &mut dyn FnMut(Event),
 ) -> Result<End> {
     let mut person = BoxUser::default();
     loop {
-        let part = Ticks::new(rig.session.tick().get().saturating_add((LOOK / TIMEBASE) as u64)).min(limit);
-        let end = rig.run(part, None, sink);
-        if end != End::Limit || rig.session.tick() >= limit {
+        let part = Ticks::new(board.session.tick().get().saturating_add((LOOK / TIMEBASE) as u64)).min(limit);
+        let end = board.run(part, None, sink);
+        if end != End::Limit || board.session.tick() >= limit {
             return Ok(end);
         }
-        if let Some(setting) = person.look(rig.session.target().open_box()) {
-            rig.session.answer(&setting)?;
+        if let Some(setting) = person.look(board.session.target().open_box()) {
+            board.session.answer(&setting)?;
         }
     }
 }
@@ -71,7 +71,7 @@ impl BoxUser {
             OpenBox::Message { buttons, .. } => buttons.join(", "),
             OpenBox::Input { .. } => "a number, cancel".to_owned(),
         };
-        terminal::aside(&format!("answer ({choices}): "));
+        terminal::print_separated(&format!("answer ({choices}): "));
         self.lines.get_or_insert_with(lines);
     }
 }

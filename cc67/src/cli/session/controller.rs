@@ -24,11 +24,11 @@ pub(crate) fn connect(address: &Address, is_agreed: bool) -> Result<ControllerLi
 
 /// Asks for agreement, unless it was given in advance.
 pub(crate) fn agree_unless(is_given: bool) -> Result<()> {
-    if is_given { Ok(()) } else { agree() }
+    if is_given { Ok(()) } else { require_agreement() }
 }
 
 /// Asks for agreement once for each project folder.
-fn agree() -> Result<()> {
+fn require_agreement() -> Result<()> {
     let folder = std::env::current_dir().context("cannot find the present folder")?;
     let folder = folder.display().to_string();
     let record = record();
@@ -36,8 +36,8 @@ fn agree() -> Result<()> {
     if agreed.lines().any(|line| line == folder) {
         return Ok(());
     }
-    terminal::aside(FIRST_TIME);
-    if !agrees("Connect?")? {
+    terminal::print_separated(FIRST_TIME);
+    if !ask_user("Connect?")? {
         bail!("not connected");
     }
     let Some(path) = record else { return Ok(()) };
@@ -50,7 +50,7 @@ fn agree() -> Result<()> {
 }
 
 /// Asks the user at the terminal a question; without a terminal, it counts as declined.
-pub(crate) fn agrees(question: &str) -> Result<bool> {
+pub(crate) fn ask_user(question: &str) -> Result<bool> {
     if !(io::stdin().is_terminal() && io::stderr().is_terminal()) {
         bail!("nobody is here to agree to that: `--yes` does");
     }
@@ -59,7 +59,7 @@ pub(crate) fn agrees(question: &str) -> Result<bool> {
 
 /// Asks the user at the terminal a question; returns whether the answer is yes.
 fn agrees_to(question: &str) -> Result<bool> {
-    terminal::aside(&format!("{question} [y/N] "));
+    terminal::print_separated(&format!("{question} [y/N] "));
     let mut answer = String::new();
     io::stdin().lock().read_line(&mut answer).context("cannot read the answer")?;
     Ok(matches!(answer.trim(), "y" | "Y" | "yes"))
@@ -95,9 +95,9 @@ pub(crate) fn progress() -> impl FnMut(ThreadId, Progress) + Send + 'static {
     |thread, Progress { done, total }| {
         let is_shown = io::stderr().is_terminal();
         if is_shown && total > 0 {
-            terminal::aside(&format!("\rthread {thread}: {done} of {total} bytes loaded"));
+            terminal::print_separated(&format!("\rthread {thread}: {done} of {total} bytes loaded"));
             if done == total {
-                terminal::aside("\r\x1b[K");
+                terminal::print_separated("\r\x1b[K");
             }
         }
     }
@@ -115,7 +115,7 @@ pub(crate) fn stop<T: Target>(session: &mut Session<T>, events: EventSink<'_>) {
         (false, true) => terminal::note(&format!("thread {stopped} stopped; enabled axes stay enabled")),
         (false, false) => terminal::note(&format!("thread {stopped} may still run: use the emergency stop")),
     }
-    if session.target().lost().is_some() || !io::stdin().is_terminal() {
+    if session.target().loss_reason().is_some() || !io::stdin().is_terminal() {
         return;
     }
     // An answer that cannot be read counts as "no".

@@ -38,7 +38,7 @@ impl Client {
         let replies = self.exchange(&[format!("{SAVE};Version").into_bytes()], SAVE, SAVED_WITHIN);
         self.link.release();
         let replies = replies?;
-        if replies.iter().any(|line| line == SAVED) && self.hears(VERIFIED)? {
+        if replies.iter().any(|line| line == SAVED) && self.wait_for_line(VERIFIED)? {
             return Ok(());
         }
         let lines = self.console.iter().map(|line| String::from_utf8_lossy(line).into_owned());
@@ -47,7 +47,7 @@ impl Client {
     }
 
     /// Waits for a console line and takes it; returns whether it came.
-    fn hears(&mut self, wanted: &[u8]) -> Result<bool, WireError> {
+    fn wait_for_line(&mut self, wanted: &[u8]) -> Result<bool, WireError> {
         let end = now() + VERIFIED_WITHIN;
         loop {
             if let Some(at) = self.console.iter().position(|line| line == wanted) {

@@ -55,7 +55,7 @@ impl LoadImage {
                 program: firmware.trim_end().into(),
             });
         }
-        self.check_space(&spaces(version))
+        self.check_space(&program_spaces(version))
     }
 
     /// Checks that the image begins in the space of its thread and ends within the spaces of programs.
@@ -109,7 +109,7 @@ impl LoadImage {
 }
 
 /// The program spaces of a board by its version; for an unknown version, those of a KFLOP.
-fn spaces(version: &str) -> ProgramSpaces {
+fn program_spaces(version: &str) -> ProgramSpaces {
     TargetBoard::of_version(version.trim_end()).unwrap_or_else(TargetBoard::default_board).programs()
 }
 
@@ -125,23 +125,23 @@ impl Client {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<(), WireError> {
         if is_forced {
-            image.check_space(&spaces(&self.version))?;
+            image.check_space(&program_spaces(&self.version))?;
         } else {
             image.check(&self.version)?;
         }
-        self.kill(image.thread)?;
+        self.stop_thread(image.thread)?;
         let total = image.size();
         let mut done = 0;
         progress(Progress { done, total });
-        for (address, bytes) in image.ordered(&spaces(&self.version)) {
+        for (address, bytes) in image.ordered(&program_spaces(&self.version)) {
             for (piece, at) in bytes.chunks(PIECE).zip((address..).step_by(PIECE)) {
-                self.send_piece(at, piece).map_err(|error| failed(image, error))?;
+                self.send_piece(at, piece).map_err(|error| load_error(image, error))?;
                 done = (done + piece.len()).min(total);
                 progress(Progress { done, total });
             }
         }
         self.command(&format!("EntryPoint{} {:X}", image.thread, image.entry))
-            .map_err(|error| failed(image, error))?;
+            .map_err(|error| load_error(image, error))?;
         progress(Progress { done: total, total });
         Ok(())
     }
@@ -167,11 +167,11 @@ impl Client {
         self.link.claim(ANSWER_WITHIN)?;
         let result = self.exchange(&lines, &command, ANSWER_WITHIN);
         self.link.release();
-        self.judge(address, result)
+        self.check_block(address, result)
     }
 
     /// Judges the success of a block by the lines before the reply of its fence.
-    fn judge(&mut self, address: u32, result: Result<Vec<String>, WireError>) -> Result<(), WireError> {
+    fn check_block(&mut self, address: u32, result: Result<Vec<String>, WireError>) -> Result<(), WireError> {
         let foreign = result?.len();
         self.foreign_lines += foreign as u64;
         if self.refusals().is_empty() {
@@ -190,7 +190,7 @@ impl Client {
 }
 
 /// The error of a load that did not arrive completely.
-fn failed(image: &LoadImage, error: WireError) -> WireError {
+fn load_error(image: &LoadImage, error: WireError) -> WireError {
     let start = image.parts.iter().map(|(address, _)| *address).min().unwrap_or(image.entry);
     let end = image.parts.iter().map(|(address, bytes)| address.saturating_add(bytes.len() as u32)).max();
     let reason = match error {

@@ -203,7 +203,7 @@ impl Client {
     ///
     /// # Errors
     /// It does not stop, or the board does not answer.
-    pub fn kill(&mut self, thread: ThreadId) -> Result<(), WireError> {
+    pub fn stop_thread(&mut self, thread: ThreadId) -> Result<(), WireError> {
         self.command(&format!("Kill{thread}"))?;
         let end = now() + Duration::from_secs(1);
         while self.is_active(thread)? {

@@ -53,7 +53,7 @@ pub fn kognas() -> Result<Vec<FoundBoard>, WireError> {
 /// Opens the link to the controller with a serial number, or to the only one.
 pub(super) fn open(wanted: Option<u32>, place: String) -> Result<BoardLink, WireError> {
     let found = search().map_err(WireError::KognaSearch)?;
-    let kogna = choose(&found, wanted).ok_or_else(|| absent(&found, wanted))?;
+    let kogna = choose(&found, wanted).ok_or_else(|| not_found_error(&found, wanted))?;
     tcp::open(&kogna.address.to_string(), BOARD_PORT, place)
 }
 
@@ -67,7 +67,7 @@ fn choose(found: &[Kogna], wanted: Option<u32>) -> Option<Kogna> {
 }
 
 /// The error when no controller could be selected.
-fn absent(found: &[Kogna], wanted: Option<u32>) -> WireError {
+fn not_found_error(found: &[Kogna], wanted: Option<u32>) -> WireError {
     let name = |kogna: &Kogna| format!("kogna:{} at {}", kogna.serial, kogna.address);
     let present = found.iter().map(name).collect::<Vec<_>>().join(", ");
     match wanted {
@@ -83,7 +83,7 @@ fn absent(found: &[Kogna], wanted: Option<u32>) -> WireError {
 fn search() -> io::Result<Vec<Kogna>> {
     let local: Vec<_> =
         if_addrs::get_if_addrs()?.iter().filter_map(|network| private(network.ip())).collect();
-    ask(&local, GROUP, ANSWER_PORT)
+    query(&local, GROUP, ANSWER_PORT)
 }
 
 /// A local address whose network is searched.
@@ -93,7 +93,7 @@ fn private(address: IpAddr) -> Option<Ipv4Addr> {
 }
 
 /// Sends the query from each local address, and collects the answers to a port.
-fn ask(local: &[Ipv4Addr], group: SocketAddrV4, port: u16) -> io::Result<Vec<Kogna>> {
+fn query(local: &[Ipv4Addr], group: SocketAddrV4, port: u16) -> io::Result<Vec<Kogna>> {
     let mut question = [0; DATAGRAM];
     question[..QUESTION.len()].copy_from_slice(QUESTION);
     let mut sockets = Vec::new();
@@ -164,7 +164,7 @@ mod tests {
             }
             question.get(..length).map(<[u8]>::to_vec)
         });
-        let found = ask(&[Ipv4Addr::LOCALHOST], group, port).expect("the network is there");
+        let found = query(&[Ipv4Addr::LOCALHOST], group, port).expect("the network is there");
         let question = answering.join().expect("it has answered").expect("it fits");
         assert!(question.len() == DATAGRAM && question.starts_with(b"Kogna?\0"), "{question:?}");
         assert_eq!(found.iter().map(|kogna| kogna.serial).collect::<Vec<_>>(), [7, 12]);
@@ -182,7 +182,7 @@ mod tests {
             (&[], None, "no Kogna answers"),
         ] {
             assert_eq!(choose(found, wanted), None);
-            let error = absent(found, wanted).to_string();
+            let error = not_found_error(found, wanted).to_string();
             assert!(error.starts_with(expect), "{error}");
         }
     }

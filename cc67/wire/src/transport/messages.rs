@@ -24,7 +24,7 @@ pub(super) struct Framed<S>(pub(super) S);
 
 impl<S: Read + Write + Send> Messages for Framed<S> {
     fn send(&mut self, message: &[u8]) -> io::Result<()> {
-        let length = u16::try_from(limited(message)?.len()).map_err(|_| io::ErrorKind::InvalidInput)?;
+        let length = u16::try_from(check_length(message)?.len()).map_err(|_| io::ErrorKind::InvalidInput)?;
         self.0.write_all(&[&length.to_le_bytes()[..], message].concat())
     }
 
@@ -48,7 +48,7 @@ pub(super) struct Unframed<S>(pub(super) S);
 
 impl<S: Read + Write + Send> Messages for Unframed<S> {
     fn send(&mut self, message: &[u8]) -> io::Result<()> {
-        self.0.write_all(limited(message)?)
+        self.0.write_all(check_length(message)?)
     }
 
     fn receive(&mut self) -> io::Result<Vec<u8>> {
@@ -68,6 +68,6 @@ impl<S: Read + Write + Send> Messages for Unframed<S> {
 }
 
 /// Returns a message, unless it is too long for the server.
-fn limited(message: &[u8]) -> io::Result<&[u8]> {
+fn check_length(message: &[u8]) -> io::Result<&[u8]> {
     if message.len() <= LONGEST_REQUEST { Ok(message) } else { Err(io::ErrorKind::InvalidInput.into()) }
 }

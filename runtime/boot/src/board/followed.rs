@@ -91,7 +91,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
 
     /// Returns the position of the processor, and the preceding packets.
     #[must_use]
-    pub fn reached(&self) -> StopPosition {
+    pub fn stop_position(&self) -> StopPosition {
         let state = &self.core.state;
         let back = state.reg(LINK);
         let [last, before] = state.branched_at();
@@ -112,7 +112,7 @@ impl<A: ExternalHardware> BootedBoard<A> {
     /// function called by a program.
     #[must_use]
     pub fn program_call(&self) -> Option<ProgramCall> {
-        let StopPosition { pc, thread, is_masked, call, .. } = self.reached();
+        let StopPosition { pc, thread, is_masked, call, .. } = self.stop_position();
         let at = call.filter(|at| is_of_program(*at) && !is_of_program(pc))?;
         let argument = self.core.state.reg(ARGUMENTS[0]).cast_signed();
         Some(ProgramCall { function: pc, thread: thread.filter(|_| !is_masked), at, argument })

@@ -29,7 +29,7 @@ fn with_empty_buffer() -> Option<BootedBoard> {
     let pointer = board.file().address("gather_buffer").expect("it gathers");
     let buffer = kmotiondef::GuestAddr::new(board.memory().peek(pointer));
     // `GetVirtualBits` and `FPGA` write to addresses outside any board, and were answered nevertheless.
-    board.forgive(true);
+    board.tolerate_unmapped(true);
     board.memory_mut().poke_bytes(buffer, &vec![0; GATHER]).expect("it is in RAM");
     Some(board)
 }

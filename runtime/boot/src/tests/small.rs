@@ -213,9 +213,9 @@ fn processor_activity_is_visible_inside_and_outside_the_interrupt() {
     board.run_to(board.next_tick() + 40).expect("it runs");
     let inside = board.processor_state();
     assert!(inside.is_masked && inside.thread.is_none(), "{inside:?}");
-    let looks = board.looks();
+    let looks = board.poll_count();
     board.run_to(board.cycle() + 1000).expect("it runs");
-    assert!(board.looks() > looks, "it looks for the PC all the while");
+    assert!(board.poll_count() > looks, "it looks for the PC all the while");
 }
 
 /// A firmware that repeatedly calls `sqrt` in the ROM with the argument 2.25, and counts the calls.

@@ -92,7 +92,7 @@ fn tell_train(pins: &mut Pins, bit: Bit, (period, high): (i64, i64), span: Range
     let mut at = span.start.get();
     while at <= span.end.get() {
         let phase = at.rem_euclid(period);
-        pins.show(bit, phase < high, Cycles::new(at));
+        pins.report_level(bit, phase < high, Cycles::new(at));
         at += if phase < high { high - phase } else { period - phase };
     }
 }

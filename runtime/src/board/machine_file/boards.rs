@@ -16,7 +16,7 @@ pub(super) fn board(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<
         "respect_enable" => machine.boards.respect_enable = value.flag()?;
         "konnect" => machine.boards.konnects[1] = konnects(&value)?;
         "konnect_aux0" => machine.boards.konnects[0] = konnects(&value)?;
-        "snapamp" => machine.boards.snapamps = value.whole(2)? as usize;
+        "snapamp" => machine.boards.snapamps = value.unsigned(2)? as usize;
         "flash" => machine.boards.flash = file(&value)?;
         "strict_flash" => machine.boards.strict_flash = value.flag()?;
     });
@@ -29,7 +29,7 @@ fn konnects(value: &Value<'_>) -> ReadResult<u8> {
         return value.choice(&[("any", u8::MAX)]);
     }
     let list = value.array().map_err(|_| value.is_wrong("\"any\" or a list of addresses such as [0, 1]"))?;
-    list.iter().try_fold(0, |present, address| Ok(present | 1 << address.whole(ADDRESSES - 1)?))
+    list.iter().try_fold(0, |present, address| Ok(present | 1 << address.unsigned(ADDRESSES - 1)?))
 }
 
 pub(super) fn uart(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<()> {

@@ -73,7 +73,7 @@ fn write(form: Form, value: &Value<'_>, actions: &mut Vec<Statement>) -> ReadRes
         }
         Form::Each(template) => {
             for (key, value) in value.table()?.entries() {
-                let setting = quoted(&format!("{}={}", key.text, value.plain()));
+                let setting = quoted(&format!("{}={}", key.text, value.raw_text()));
                 let text = template.replace("{key}", key.text).replace("{value}", &literal(&value));
                 actions.push((value.offset(), text.replace("{setting}", &setting)));
             }
@@ -124,7 +124,7 @@ fn fields(templates: &[&str], table: &Table<'_>) -> ReadResult<String> {
 
 /// A value as a statement has it.
 fn literal(value: &Value<'_>) -> String {
-    value.text().map_or_else(|_| value.plain(), quoted)
+    value.text().map_or_else(|_| value.raw_text(), quoted)
 }
 
 fn device(table: &Table<'_>) -> ReadResult<Statement> {
@@ -135,7 +135,7 @@ fn device(table: &Table<'_>) -> ReadResult<Statement> {
             "type" => name = Some(value.text()?),
             // The location of the echo; only the UART is possible.
             "on" => value.choice(&[("uart", ())])?,
-            key => settings.push_str(&format!(" {key}={}", value.plain())),
+            key => settings.push_str(&format!(" {key}={}", value.raw_text())),
         }
     }
     let name = name.ok_or_else(|| table.is_missing("type"))?;

@@ -206,7 +206,7 @@ impl MachineFile {
     }
 
     /// Takes names of files that do not begin at a root as relative to `folder`, the one of the machine file.
-    pub fn beside(&mut self, folder: &Path) {
+    pub fn resolve_paths(&mut self, folder: &Path) {
         let names =
             [&mut self.pc.disk_root, &mut self.boards.flash, &mut self.uart.input, &mut self.uart.output];
         for name in names.into_iter().flatten() {

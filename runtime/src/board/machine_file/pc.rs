@@ -14,7 +14,7 @@ pub(super) fn host(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<(
         "files" => machine.pc.disk_files.extend(files(&value)?);
         "message_box" => {
             for button in one_or_more(&value) {
-                answer(&mut machine.pc.answers, &button, &format!("msgbox={}", button.plain()))?;
+                answer(&mut machine.pc.answers, &button, &format!("msgbox={}", button.raw_text()))?;
             }
         };
         "cells" => {

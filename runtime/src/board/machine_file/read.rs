@@ -153,7 +153,7 @@ impl<'a> Value<'a> {
     }
 
     /// The text of a word or number, unchanged.
-    pub(super) fn plain(&self) -> String {
+    pub(super) fn raw_text(&self) -> String {
         match self.source.get_ref() {
             DeValue::String(text) => text.to_string(),
             DeValue::Boolean(flag) => flag.to_string(),
@@ -192,7 +192,7 @@ impl<'a> Value<'a> {
     }
 
     /// A whole number up to `max`.
-    pub(super) fn whole(&self, max: u32) -> ReadResult<u32> {
+    pub(super) fn unsigned(&self, max: u32) -> ReadResult<u32> {
         let number =
             self.parsed().filter(|number| number.fract() == 0.0 && (0.0..=f64::from(max)).contains(number));
         number
@@ -297,7 +297,7 @@ impl<'a> Value<'a> {
     }
 
     /// A table of tables that have numbers as keys.
-    pub(super) fn numbered(&self) -> ReadResult<Table<'a>> {
+    pub(super) fn indexed_tables(&self) -> ReadResult<Table<'a>> {
         match self.source.get_ref() {
             DeValue::Table(_) => self.table(),
             _ => Err(self.is_wrong(&format!("tables with a number, such as `[{}.0]`", self.path))),

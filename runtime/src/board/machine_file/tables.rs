@@ -22,27 +22,27 @@ pub(super) fn apply(machine: &mut MachineFile, text: &str, is_option: bool) -> R
     })?;
     let mut statements = Vec::new();
     let from = Source { text: (!is_option).then_some(text), board: machine.board };
-    let root = root(machine, &mut statements, &Table::new("", 0, table.get_ref(), from));
+    let root = read_root(machine, &mut statements, &Table::new("", 0, table.get_ref(), from));
     root.map_err(|wrong| wrong.in_text(text))?;
     machine.stimulus.rules.extend(events::rules(statements, text)?);
     Ok(())
 }
 
-fn root(
+fn read_root(
     machine: &mut MachineFile,
     statements: &mut Vec<(usize, String)>,
     table: &Table<'_>,
 ) -> ReadResult<()> {
     keys!(table, |key, value| {
-        "axis" => axes(machine, &value.numbered()?)?;
-        "switch" => machine.connected.switches.extend(each(&value, switch)?);
-        "probe" => machine.connected.probes.extend(each(&value, probe)?);
+        "axis" => axes(machine, &value.indexed_tables()?)?;
+        "switch" => machine.connected.switches.extend(read_each(&value, switch)?);
+        "probe" => machine.connected.probes.extend(read_each(&value, probe)?);
         "encoder" => handwheels(&mut machine.connected.encoders, &value)?;
-        "adc" => machine.connected.analog.extend(each(&value, analog)?);
-        "wire" => machine.wires.extend(each(&value, wire)?);
+        "adc" => machine.connected.analog.extend(read_each(&value, analog)?);
+        "wire" => machine.wires.extend(read_each(&value, wire)?);
         "event" => statements.extend(events::events(&value)?);
         "device" => statements.extend(events::devices(&value)?);
-        "gantry" => machine.connected.gantries.extend(each(&value, gantry)?);
+        "gantry" => machine.connected.gantries.extend(read_each(&value, gantry)?);
         "spindle" => spindles(&mut machine.connected.spindles, &value)?;
         "inputs" => inputs(machine, &value.table()?)?;
         "remarks" => remarks(machine, &value.table()?)?;
@@ -66,7 +66,7 @@ fn remarks(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<()> {
     Ok(())
 }
 
-fn each<T>(value: &Value<'_>, read: impl Fn(&Table<'_>) -> ReadResult<T>) -> ReadResult<Vec<T>> {
+fn read_each<T>(value: &Value<'_>, read: impl Fn(&Table<'_>) -> ReadResult<T>) -> ReadResult<Vec<T>> {
     value.tables()?.iter().map(read).collect()
 }
 
@@ -168,7 +168,7 @@ fn gantry(table: &Table<'_>) -> ReadResult<Gantry> {
 fn encoder_input(table: &Table<'_>) -> ReadResult<usize> {
     let mut input = None;
     keys!(table, |key, value| {
-        "input" => input = Some(value.whole(15)? as usize);
+        "input" => input = Some(value.unsigned(15)? as usize);
     });
     input.ok_or_else(|| table.is_missing("input"))
 }
@@ -181,9 +181,9 @@ fn channel(table: &Table<'_>) -> ReadResult<Channel> {
     let (mut channel, mut is_snapamp) = (None, false);
     let (mut forward, mut back) = (None, None);
     keys!(table, |key, value| {
-        "dac" => channel = Some(Channel::Dac(value.whole(7)? as usize));
-        "step" => channel = Some(Channel::Generator(value.whole(31)? as usize & 7));
-        "pwm" => channel = Some(Channel::Pwm(value.whole(15)? as usize));
+        "dac" => channel = Some(Channel::Dac(value.unsigned(7)? as usize));
+        "step" => channel = Some(Channel::Generator(value.unsigned(31)? as usize & 7));
+        "pwm" => channel = Some(Channel::Pwm(value.unsigned(15)? as usize));
         "forward" => forward = Some(value.output()?);
         "back" => back = Some(value.output()?);
         "amplifier" => is_snapamp = value.choice(&[("snapamp", true)])?;
@@ -271,7 +271,7 @@ fn place(table: &Table<'_>) -> ReadResult<(AxisId, f64)> {
 }
 
 fn handwheels(wheels: &mut Vec<Handwheel>, value: &Value<'_>) -> ReadResult<()> {
-    for wheel in each(value, handwheel)? {
+    for wheel in read_each(value, handwheel)? {
         if wheels.iter().any(|other| other.channel == wheel.channel) {
             let text = format!(
                 "`encoder`: channel {} has two tables; one of them has all its `moves`",
@@ -287,14 +287,14 @@ fn handwheels(wheels: &mut Vec<Handwheel>, value: &Value<'_>) -> ReadResult<()> 
 fn handwheel(table: &Table<'_>) -> ReadResult<Handwheel> {
     let (mut channel, mut moves) = (None, Vec::new());
     keys!(table, |key, value| {
-        "channel" => channel = Some(value.whole(15)? as usize);
-        "moves" => moves = value.array()?.iter().map(turn).collect::<ReadResult<_>>()?;
+        "channel" => channel = Some(value.unsigned(15)? as usize);
+        "moves" => moves = value.array()?.iter().map(read_turn).collect::<ReadResult<_>>()?;
     });
     Ok(Handwheel { channel: channel.ok_or_else(|| table.is_missing("channel"))?, moves })
 }
 
 /// Start in seconds, counts, duration in seconds.
-fn turn(value: &Value<'_>) -> ReadResult<[f64; 3]> {
+fn read_turn(value: &Value<'_>) -> ReadResult<[f64; 3]> {
     let parts = value.array()?;
     let [start, counts, duration] = parts.as_slice() else {
         return Err(value.is_wrong("[start in seconds, counts, duration in seconds]"));
@@ -305,10 +305,10 @@ fn turn(value: &Value<'_>) -> ReadResult<[f64; 3]> {
 fn analog(table: &Table<'_>) -> ReadResult<Analog> {
     let (mut channel, mut source) = (None, None);
     keys!(table, |key, value| {
-        "channel" => channel = Some(value.whole(7)? as usize);
+        "channel" => channel = Some(value.unsigned(7)? as usize);
         "value" => source = Some(AnalogSource::Value(counts(&value)?));
         "sine" => source = Some(sine(&value.table()?)?);
-        "follows" => source = Some(follows(&value.table()?)?);
+        "follows" => source = Some(read_follower(&value.table()?)?);
     });
     let source = source.ok_or_else(|| table.is_missing("value"))?;
     Ok(Analog { channel: channel.ok_or_else(|| table.is_missing("channel"))?, source })
@@ -334,7 +334,7 @@ fn sine(table: &Table<'_>) -> ReadResult<AnalogSource> {
     Ok(AnalogSource::Sine { mean, amp, hz })
 }
 
-fn follows(table: &Table<'_>) -> ReadResult<AnalogSource> {
+fn read_follower(table: &Table<'_>) -> ReadResult<AnalogSource> {
     let (mut axis, mut gain, mut offset) = (None, 1.0, 0.0);
     keys!(table, |key, value| {
         "axis" => axis = Some(value.axis()?);
@@ -367,7 +367,7 @@ fn spindles(spindles: &mut Vec<Spindle>, value: &Value<'_>) -> ReadResult<()> {
             let changed = spindle(spindles.first().copied(), &table)?;
             spindles.splice(..spindles.len().min(1), [changed]);
         }
-        Err(_) => spindles.extend(each(value, |table| spindle(None, table))?),
+        Err(_) => spindles.extend(read_each(value, |table| spindle(None, table))?),
     }
     Ok(())
 }
@@ -382,7 +382,7 @@ fn spindle(before: Option<Spindle>, table: &Table<'_>) -> ReadResult<Spindle> {
         "axis" => axis = Some(value.axis()?);
         "counts_per_rev" => counts = not_zero(&value)?;
         "driven_by" => drive = Some(SpindleDrive::Axis(named_axis(&value)?));
-        "dac" => drive = Some(SpindleDrive::Dac(value.whole(7)? as usize));
+        "dac" => drive = Some(SpindleDrive::Dac(value.unsigned(7)? as usize));
         "bits" => drive = Some(directions(&value.table()?)?);
         "full_scale_rps" => full = value.positive()?;
         "tau_s" => tau = value.positive()?;
@@ -453,7 +453,7 @@ fn cpu(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<()> {
             }
             machine.cpu.servo_us = Some(time);
         };
-        "bss_fill" => machine.cpu.bss_fill = value.whole(255)? as u8;
+        "bss_fill" => machine.cpu.bss_fill = value.unsigned(255)? as u8;
         "strict_stack" => machine.cpu.strict_stack = value.flag()?;
         "ns_per_instruction" => {
             let time = value.positive()?;
@@ -463,7 +463,7 @@ fn cpu(machine: &mut MachineFile, table: &Table<'_>) -> ReadResult<()> {
             machine.cpu.ns_per_instruction = time;
         };
         "board_faults" => machine.cpu.board_faults = value.flag()?;
-        "plan_ticks" => machine.cpu.plan_ticks = value.whole(100_000)?;
+        "plan_ticks" => machine.cpu.plan_ticks = value.unsigned(100_000)?;
         "fresh_globals" => machine.cpu.fresh_globals = value.flag()?;
     });
     Ok(())

@@ -148,7 +148,7 @@ answers = ["input=1.5", "dro.x=2"]
         answers.set(setting).expect(setting);
     }
     assert_eq!(machine.pc.answers, answers);
-    machine.beside(Path::new("machines"));
+    machine.resolve_paths(Path::new("machines"));
     assert_eq!(
         machine.pc.disk_root.as_deref().map(Path::new),
         Some(Path::new("machines").join("pc").as_path())

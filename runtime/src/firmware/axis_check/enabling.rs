@@ -42,7 +42,7 @@ pub(super) fn messages(
         wrong_input(parts, memory, function, axis),
         wrong_output(parts, memory, function, axis),
         no_amplifier(parts, memory, function, axis),
-        leap(memory, function, axis, dest),
+        leap_message(memory, function, axis, dest),
         short_pulses(parts, memory, function, axis),
         spindle_shared(parts, memory, function, axis),
         no_feedback(parts, memory, function, axis),
@@ -83,13 +83,13 @@ pub(super) fn limit_active(
 }
 
 /// Every other enabled axis.
-fn others(memory: &GuestMemory, axis: AxisId) -> impl Iterator<Item = AxisId> {
+fn other_enabled_axes(memory: &GuestMemory, axis: AxisId) -> impl Iterator<Item = AxisId> {
     memory.axes().iter().filter(move |other| *other != axis && memory.axis(*other, Chan::ENABLE) != 0)
 }
 
 fn shared_channel(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
     let channel = channel_of(memory, axis)?;
-    let other = others(memory, axis).find(|other| channel_of(memory, *other) == Some(channel))?;
+    let other = other_enabled_axes(memory, axis).find(|other| channel_of(memory, *other) == Some(channel))?;
     Some(Message::ChannelShared { function, axis, other, channel: channel.to_string() })
 }
 
@@ -103,7 +103,7 @@ pub(super) fn loop_input(memory: &GuestMemory, axis: AxisId) -> Option<i32> {
 
 fn shared_input(memory: &GuestMemory, function: Function, axis: AxisId) -> Option<Message> {
     let input = loop_input(memory, axis)?;
-    let other = others(memory, axis).find(|other| loop_input(memory, *other) == Some(input))?;
+    let other = other_enabled_axes(memory, axis).find(|other| loop_input(memory, *other) == Some(input))?;
     Some(Message::InputShared { function, axis, other, input })
 }
 
@@ -171,7 +171,7 @@ fn no_feedback(parts: &Parts, memory: &GuestMemory, function: Function, axis: Ax
 }
 
 /// A closed-loop axis that is enabled far from its commanded position.
-fn leap(memory: &GuestMemory, function: Function, axis: AxisId, dest: f64) -> Option<Message> {
+fn leap_message(memory: &GuestMemory, function: Function, axis: AxisId, dest: f64) -> Option<Message> {
     const FAR: f64 = 100.0;
     loop_input(memory, axis)?;
     let position = memory.axis(axis, Chan::POSITION);

@@ -15,17 +15,17 @@ pub(crate) struct Globals {
 
 impl Globals {
     /// Keeps the data of programs that are loaded from now on.
-    pub(crate) fn keep(&mut self) {
+    pub(crate) fn enable(&mut self) {
         self.is_kept = true;
     }
 
     /// Removes the program of a thread.
-    pub(crate) fn forget(&mut self, thread: ThreadId) {
+    pub(crate) fn remove(&mut self, thread: ThreadId) {
         self.sections[thread.index()].clear();
     }
 
     /// A section of data is loaded for a thread.
-    pub(crate) fn note(&mut self, thread: ThreadId, address: GuestAddr, bytes: &[u8]) {
+    pub(crate) fn record_section(&mut self, thread: ThreadId, address: GuestAddr, bytes: &[u8]) {
         if self.is_kept {
             self.sections[thread.index()].push((address, bytes.to_vec()));
         }

@@ -40,8 +40,8 @@ impl Default for Heap {
 
 impl Heap {
     /// Allocates a block; `None` for a size of 0.
-    pub(crate) fn take(&mut self, size: u32) -> Option<GuestAddr> {
-        let size = rounded(size)?;
+    pub(crate) fn allocate(&mut self, size: u32) -> Option<GuestAddr> {
+        let size = block_size(size)?;
         let place = self.free.iter().position(|free| free.size >= size)?;
         let Free { block, size: found } = self.free.remove(place);
         self.use_part(block, found, size);
@@ -50,7 +50,7 @@ impl Heap {
 
     /// Takes a block at a multiple of `alignment`, which is a power of two.
     pub(crate) fn take_aligned(&mut self, size: u32, alignment: u32) -> Option<GuestAddr> {
-        let size = rounded(size)?;
+        let size = block_size(size)?;
         let begin = |free: &Free| {
             let aligned = free.block.checked_next_multiple_of(alignment.max(8))?;
             // The rest before it becomes a separate block.
@@ -94,7 +94,7 @@ impl Heap {
 
     /// Changes the size of a block in place; returns whether that was possible.
     pub(crate) fn resize(&mut self, block: GuestAddr, size: u32) -> bool {
-        let (Some(old), Some(size)) = (self.size(block), rounded(size)) else { return false };
+        let (Some(old), Some(size)) = (self.size(block), block_size(size)) else { return false };
         let block = block.get();
         if size <= old {
             if old - size >= LEAST {
@@ -119,7 +119,7 @@ impl Heap {
     }
 
     /// Frees a block; `false` if there is none at that address.
-    pub(crate) fn give(&mut self, block: GuestAddr) -> bool {
+    pub(crate) fn free(&mut self, block: GuestAddr) -> bool {
         let Some(size) = self.used.remove(&block.get()) else { return false };
         self.release(Free { block: block.get(), size });
         true
@@ -140,7 +140,7 @@ impl Heap {
 }
 
 /// The size of the block for a number of bytes; `None` for 0 bytes.
-fn rounded(size: u32) -> Option<u32> {
+fn block_size(size: u32) -> Option<u32> {
     if size == 0 { None } else { size.checked_next_multiple_of(8) }
 }
 
@@ -151,18 +151,18 @@ mod tests {
     #[test]
     fn blocks_do_not_overlap_and_are_reused() {
         let mut heap = Heap::default();
-        let first = heap.take(10).expect("room");
+        let first = heap.allocate(10).expect("room");
         let second = heap.take_aligned(100, 64).expect("room");
         assert_eq!(first.get(), START + HEADER);
         assert!(second.get() >= first.get() + 16 + HEADER && second.get().is_multiple_of(64));
-        assert!(heap.give(first) && !heap.give(first));
-        assert_eq!(heap.take(16), Some(first));
+        assert!(heap.free(first) && !heap.free(first));
+        assert_eq!(heap.allocate(16), Some(first));
     }
 
     #[test]
     fn about_99000_bytes_are_free() {
-        assert!(Heap::default().take(98_992).is_some());
-        assert!(Heap::default().take(99_000).is_none());
-        assert!(Heap::default().take(u32::MAX).is_none());
+        assert!(Heap::default().allocate(98_992).is_some());
+        assert!(Heap::default().allocate(99_000).is_none());
+        assert!(Heap::default().allocate(u32::MAX).is_none());
     }
 }

@@ -18,13 +18,13 @@ pub(crate) struct Locks(Vec<HeldLock>);
 
 impl Locks {
     /// A thread takes a lock.
-    pub(crate) fn taken(&mut self, held: HeldLock) {
-        self.freed(held.lock);
+    pub(crate) fn record_taken(&mut self, held: HeldLock) {
+        self.record_freed(held.lock);
         self.0.push(held);
     }
 
     /// Notes that a lock is free again.
-    pub(crate) fn freed(&mut self, lock: GuestAddr) {
+    pub(crate) fn record_freed(&mut self, lock: GuestAddr) {
         self.0.retain(|held| held.lock != lock);
     }
 

@@ -119,7 +119,7 @@ impl Calls {
     }
 
     /// Keeps state for the repetition of the call after its wake event.
-    pub(crate) fn keep(&mut self, caller: &Caller<'_>, continuation: Continuation) {
+    pub(crate) fn store(&mut self, caller: &Caller<'_>, continuation: Continuation) {
         self.continuations[slot(caller.thread)] = Some(continuation);
     }
 

@@ -154,7 +154,7 @@ const fn bit(axis: AxisId) -> u16 {
 
 impl Motions {
     /// A program starts in a thread.
-    pub(crate) fn begins(&mut self, thread: ThreadId) {
+    pub(crate) fn start_thread(&mut self, thread: ThreadId) {
         self.threads[thread.index()] = Thread::default();
         for mover in &mut self.movers {
             mover.take_if(|mover| *mover == thread);
@@ -162,7 +162,7 @@ impl Motions {
     }
 
     /// Notes the length of a move of an axis; `small` if that is a few counts.
-    pub(crate) fn goes(&mut self, axis: AxisId, way: f64, small: Option<SmallMove>) {
+    pub(crate) fn record_move_length(&mut self, axis: AxisId, way: f64, small: Option<SmallMove>) {
         self.ways[axis.index()] = way;
         let all = &mut self.small[axis.index()];
         *all = match (*all, small) {
@@ -196,12 +196,12 @@ impl Motions {
     }
 
     /// Returns the distance of the last move of an axis.
-    pub(crate) fn way(&self, axis: AxisId) -> f64 {
+    pub(crate) fn last_distance(&self, axis: AxisId) -> f64 {
         self.ways[axis.index()]
     }
 
     /// An axis is disabled at a destination, in the middle of a move.
-    pub(crate) fn cut(&mut self, axis: AxisId, dest: f64) {
+    pub(crate) fn record_disabled(&mut self, axis: AxisId, dest: f64) {
         self.cut[axis.index()] = Some(DisabledMove::At(dest));
     }
 
@@ -257,7 +257,7 @@ impl Motions {
     }
 
     /// A thread moves an axis; the thread that moved it before, if that was another one.
-    pub(crate) fn moves(&mut self, thread: ThreadId, axis: AxisId) -> Option<ThreadId> {
+    pub(crate) fn record_mover(&mut self, thread: ThreadId, axis: AxisId) -> Option<ThreadId> {
         let own = &mut self.threads[thread.index()];
         own.moved |= bit(axis);
         own.together &= !bit(axis);
@@ -265,7 +265,7 @@ impl Motions {
     }
 
     /// Notes that a thread has polled the motion of an axis, with the answer `done`. `is_moving` has the moving axes.
-    pub(crate) fn asked(
+    pub(crate) fn record_poll(
         &mut self,
         thread: ThreadId,
         axis: AxisId,
@@ -345,12 +345,12 @@ impl Motions {
     }
 
     /// A thread has moved an axis to its switch.
-    pub(crate) fn homes(&mut self, thread: ThreadId, axis: AxisId) {
+    pub(crate) fn record_homing(&mut self, thread: ThreadId, axis: AxisId) {
         self.threads[thread.index()].homed |= bit(axis);
     }
 
     /// A thread zeroes an axis; `is_away` says which axes are not at 0.
-    pub(crate) fn zeroes(
+    pub(crate) fn record_zero(
         &mut self,
         thread: ThreadId,
         axis: AxisId,
@@ -402,29 +402,29 @@ mod tests {
     #[test]
     fn a_wait_for_the_wrong_axis_is_made_good_by_one_for_the_right_one() {
         let mut motions = Motions::default();
-        motions.moves(thread(1), axis(1));
+        motions.record_mover(thread(1), axis(1));
         let moves_1 = |other: AxisId| other == axis(1);
-        motions.asked(thread(1), axis(0), 1, None, moves_1);
+        motions.record_poll(thread(1), axis(0), 1, None, moves_1);
         assert_eq!(motions.wrong_waits().map(|wait| wait.moving).collect::<Vec<_>>(), [axis(1)]);
-        motions.asked(thread(1), axis(1), 0, None, moves_1);
+        motions.record_poll(thread(1), axis(1), 0, None, moves_1);
         assert_eq!(motions.wrong_waits().count(), 0);
     }
 
     #[test]
     fn another_threads_axis_may_be_waited_for() {
         let mut motions = Motions::default();
-        motions.moves(thread(1), axis(1));
-        assert_eq!(motions.moves(thread(2), axis(0)), None);
-        motions.asked(thread(1), axis(0), 1, None, |_| true);
+        motions.record_mover(thread(1), axis(1));
+        assert_eq!(motions.record_mover(thread(2), axis(0)), None);
+        motions.record_poll(thread(1), axis(0), 1, None, |_| true);
         assert_eq!(motions.wrong_waits().count(), 0);
-        assert_eq!(motions.moves(thread(1), axis(0)), Some(thread(2)));
+        assert_eq!(motions.record_mover(thread(1), axis(0)), Some(thread(2)));
     }
 
     #[test]
     fn an_axis_that_stops_moving_by_being_disabled_is_noticed() {
         let mut motions = Motions::default();
         let mut ask = |done| {
-            motions.asked(thread(1), axis(0), done, None, |_| false);
+            motions.record_poll(thread(1), axis(0), done, None, |_| false);
             motions.threads[thread(1).index()].ended_wait.and_then(|wait| wait.axis)
         };
         assert_eq!([-1, 0, -1].map(&mut ask), [None, None, Some(axis(0))]);

@@ -104,7 +104,7 @@ impl Default for Notices {
 
 impl Notices {
     /// Notes that a thread prints; returns the other thread whose line is continued by that.
-    pub(crate) fn prints(
+    pub(crate) fn record_print(
         &mut self,
         thread: Option<ThreadId>,
         at: Option<CodeAddr>,
@@ -127,7 +127,7 @@ impl Notices {
     }
 
     /// Reports the levels whose pins are still inputs.
-    pub(crate) fn settle(&mut self, out: &mut Out, now: Cycles, is_output: impl Fn(Bit) -> bool) {
+    pub(crate) fn report_pending(&mut self, out: &mut Out, now: Cycles, is_output: impl Fn(Bit) -> bool) {
         self.due = NEVER;
         for Latch { bit, function, thread, at } in std::mem::take(&mut self.latches) {
             if !is_output(bit) {
@@ -137,12 +137,12 @@ impl Notices {
     }
 
     /// Notes that a motion of an axis is called, or ended for `None`; returns the previous one.
-    pub(crate) fn moves(&mut self, axis: AxisId, called: Option<MotionCall>) -> Option<MotionCall> {
+    pub(crate) fn record_motion(&mut self, axis: AxisId, called: Option<MotionCall>) -> Option<MotionCall> {
         std::mem::replace(&mut self.moves[axis.index()], called)
     }
 
     /// Notes that a thread polls the motion of an axis.
-    pub(crate) fn asks(&mut self, thread: ThreadId, axis: AxisId) {
+    pub(crate) fn record_poll(&mut self, thread: ThreadId, axis: AxisId) {
         if let Some(called) = &mut self.moves[axis.index()] {
             called.is_polled |= called.thread == thread;
         }

@@ -68,7 +68,7 @@ pub(crate) struct Waits {
 
 impl Waits {
     /// Notes that a thread polls something or lets time pass.
-    pub(crate) fn look(&mut self, thread: ThreadId, polls: PolledState, caller: &Caller<'_>) {
+    pub(crate) fn record_poll(&mut self, thread: ThreadId, polls: PolledState, caller: &Caller<'_>) {
         let wait = &mut self.threads[thread.index()];
         wait.looked = caller.now();
         wait.looks = wait.looks.wrapping_add(if polls == PolledState::Time { 1 } else { MANY_LOOKS });
@@ -103,7 +103,7 @@ impl Waits {
     }
 
     /// Notes that a program has commanded an axis.
-    pub(crate) fn touch(&mut self, axis: AxisId) {
+    pub(crate) fn record_commanded(&mut self, axis: AxisId) {
         self.axes |= 1 << axis.index();
     }
 
@@ -113,7 +113,7 @@ impl Waits {
     }
 
     /// Returns the wait of a thread.
-    pub(crate) fn of(&self, thread: ThreadId) -> &Wait {
+    pub(crate) fn wait_of(&self, thread: ThreadId) -> &Wait {
         &self.threads[thread.index()]
     }
 }

@@ -31,7 +31,7 @@ struct InterruptedMotion {
 }
 
 /// A thread begins a motion of an axis: whether that replaces another one.
-pub(super) fn begins(
+pub(super) fn check_begin(
     parts: &mut Parts,
     caller: &Caller<'_>,
     axis: AxisId,
@@ -39,7 +39,7 @@ pub(super) fn begins(
     motion: CommandedMotion,
 ) {
     let Some(InterruptedMotion { called, dest, is_at_start, is_after_delay }) =
-        interrupted(parts, caller, axis, Some(motion))
+        interrupted_motion(parts, caller, axis, Some(motion))
     else {
         return;
     };
@@ -49,21 +49,21 @@ pub(super) fn begins(
             CommandedMotion::Move(earlier) | CommandedMotion::MoveRel(_, earlier),
             CommandedMotion::MoveRel(way, target),
         ) if is_at_start => {
-            let [earlier, way, dest, target] = [earlier, way, dest, target].map(rounded);
+            let [earlier, way, dest, target] = [earlier, way, dest, target].map(round_to_thousandths);
             Message::RelativeReplaced { function, axis, earlier, way, dest, target }
         }
         (
             CommandedMotion::Move(earlier) | CommandedMotion::MoveRel(_, earlier),
             CommandedMotion::Move(target),
         ) if is_at_start && earlier != target => {
-            let effect = format!("replaced by one to {}", rounded(target));
-            Message::MoveReplaced { function, axis, earlier: rounded(earlier), effect }
+            let effect = format!("replaced by one to {}", round_to_thousandths(target));
+            Message::MoveReplaced { function, axis, earlier: round_to_thousandths(earlier), effect }
         }
         (CommandedMotion::Move(earlier) | CommandedMotion::MoveRel(_, earlier), CommandedMotion::Jog(_))
             if is_at_start =>
         {
             let effect = "replaced by a jog".to_owned();
-            Message::MoveReplaced { function, axis, earlier: rounded(earlier), effect }
+            Message::MoveReplaced { function, axis, earlier: round_to_thousandths(earlier), effect }
         }
         (CommandedMotion::Jog(speed), CommandedMotion::Move(_) | CommandedMotion::MoveRel(..))
             if is_at_start =>
@@ -87,9 +87,9 @@ pub(super) fn begins(
 }
 
 /// Makes a remark if a thread ends the motion of an axis before the axis has moved noticeably.
-pub(super) fn ends(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function) {
+pub(super) fn check_end(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function) {
     let Some(InterruptedMotion { called, dest, is_at_start, is_after_delay }) =
-        interrupted(parts, caller, axis, None)
+        interrupted_motion(parts, caller, axis, None)
     else {
         return;
     };
@@ -97,13 +97,18 @@ pub(super) fn ends(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, functio
     let effect = if disables { "ended" } else { "stopped" };
     let message = match called.motion {
         CommandedMotion::Move(earlier) | CommandedMotion::MoveRel(_, earlier) if is_at_start => {
-            Message::MoveReplaced { function, axis, earlier: rounded(earlier), effect: effect.to_owned() }
+            Message::MoveReplaced {
+                function,
+                axis,
+                earlier: round_to_thousandths(earlier),
+                effect: effect.to_owned(),
+            }
         }
         CommandedMotion::Jog(speed) if is_at_start => Message::JogReplaced { function, axis, speed, effect },
         CommandedMotion::Move(earlier) | CommandedMotion::MoveRel(_, earlier)
             if is_after_delay && disables =>
         {
-            Message::MoveEnded { function, axis, dest, earlier: rounded(earlier) }
+            Message::MoveEnded { function, axis, dest, earlier: round_to_thousandths(earlier) }
         }
         _ => return,
     };
@@ -111,14 +116,14 @@ pub(super) fn ends(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, functio
 }
 
 /// The motion in progress that the calling thread itself has begun on an axis. `motion` is the one that it begins now.
-fn interrupted(
+fn interrupted_motion(
     parts: &mut Parts,
     caller: &Caller<'_>,
     axis: AxisId,
     motion: Option<CommandedMotion>,
 ) -> Option<InterruptedMotion> {
     let thread = caller.thread?;
-    let Wait { looked, looks, motion_looks, other_looks, .. } = *parts.calls.waits.of(thread);
+    let Wait { looked, looks, motion_looks, other_looks, .. } = *parts.calls.waits.wait_of(thread);
     let memory = &*caller.memory;
     let dest = memory.axis(axis, Chan::DEST);
     let (at, now) = (caller.at, caller.now());
@@ -135,7 +140,7 @@ fn interrupted(
         other_polls: other_looks,
         is_polled: is_asked,
     });
-    let called = parts.calls.notices.moves(axis, own)?;
+    let called = parts.calls.notices.record_motion(axis, own)?;
     let is_enabled = memory.axis(axis, Chan::ENABLE) != 0;
     if called.thread != thread || !is_enabled || !has_motion(memory, axis) {
         return None;
@@ -159,7 +164,7 @@ fn interrupted(
 }
 
 /// A place or distance in thousandths.
-fn rounded(value: f64) -> f64 {
+fn round_to_thousandths(value: f64) -> f64 {
     const PARTS: f64 = 1e3;
     libm::round(value * PARTS) / PARTS
 }

@@ -22,7 +22,12 @@ use crate::servo::{four_phase, three_phase};
 use crate::views::{TypedAccess, axis_at};
 
 /// The axis to whose structure a program's pointer leads.
-fn pointed(parts: &mut Parts, caller: &Caller<'_>, function: Function, chan: GuestAddr) -> Option<AxisId> {
+fn axis_of_structure(
+    parts: &mut Parts,
+    caller: &Caller<'_>,
+    function: Function,
+    chan: GuestAddr,
+) -> Option<AxisId> {
     let axis = axis_at(caller.memory, chan);
     if axis.is_none() {
         parts.out.diagnose(caller, Message::NotAnAxis { function, chan });
@@ -31,7 +36,7 @@ fn pointed(parts: &mut Parts, caller: &Caller<'_>, function: Function, chan: Gue
 }
 
 pub(crate) fn stop_motion(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestAddr) {
-    if let Some(axis) = pointed(parts, caller, Function::StopMotion, chan) {
+    if let Some(axis) = axis_of_structure(parts, caller, Function::StopMotion, chan) {
         caller.memory.set_axis(axis, Chan::PCOEFF, GuestAddr::NULL);
     }
 }
@@ -50,7 +55,7 @@ pub(crate) fn setup_for_move(
     starts: i32,
     count: GuestAddr,
 ) -> Result<(), TrapKind> {
-    let Some(axis) = pointed(parts, caller, Function::SetupForMove, chan) else { return Ok(()) };
+    let Some(axis) = axis_of_structure(parts, caller, Function::SetupForMove, chan) else { return Ok(()) };
     let Some(limits) = limits(caller.memory, axis, Some(velocity)) else {
         no_limits(parts, caller, axis, Function::SetupForMove);
         return Ok(());
@@ -83,13 +88,13 @@ pub(crate) fn setup_for_motion_pause(
     offset: i32,
     time: f64,
 ) {
-    if let Some(axis) = pointed(parts, caller, Function::SetupForMotionPause, chan) {
+    if let Some(axis) = axis_of_structure(parts, caller, Function::SetupForMotionPause, chan) {
         write(caller.memory, axis, index(offset), &[MotionState::hold(x, time)]);
     }
 }
 
 pub(crate) fn setup_for_motion_end(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestAddr, offset: i32) {
-    if let Some(axis) = pointed(parts, caller, Function::SetupForMotionEnd, chan) {
+    if let Some(axis) = axis_of_structure(parts, caller, Function::SetupForMotionEnd, chan) {
         let before = index(offset).checked_sub(1).map(|before| state(caller.memory, axis, before));
         let end = before.map_or(0.0, |before| before.at(before.t).x);
         write(caller.memory, axis, index(offset), &[MotionState::off(0.0, end)]);
@@ -107,7 +112,7 @@ pub(crate) fn write_3ph(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestA
 }
 
 pub(crate) fn write_4ph(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestAddr, v: f32, angle: f64) {
-    if let Some(axis) = pointed(parts, caller, Function::Write4PH, chan) {
+    if let Some(axis) = axis_of_structure(parts, caller, Function::Write4PH, chan) {
         four_phase(caller.memory, axis, v, angle);
         apply(parts, caller.memory, axis, v, angle);
     }
@@ -128,7 +133,7 @@ pub(crate) fn do_resolver_input2(
     x: f32,
     y: f32,
 ) {
-    if let Some(axis) = pointed(parts, caller, Function::DoResolverInput2, chan) {
+    if let Some(axis) = axis_of_structure(parts, caller, Function::DoResolverInput2, chan) {
         turn_resolver(caller.memory, axis, (x, y));
     }
 }

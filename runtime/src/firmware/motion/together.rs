@@ -43,7 +43,7 @@ pub(crate) fn move_xyzabc(
         (Some(_), Some(Continuation::Moves(left, progress))) => (left, progress),
         _ => {
             notice_letters(parts, caller, targets);
-            let mut moves = moves(caller, targets);
+            let mut moves = axis_targets(caller, targets);
             moves.reverse();
             costs::spend(caller, CALL - row_cost(Function::MoveXYZABC));
             (moves, PlanningStage::Called)
@@ -51,7 +51,7 @@ pub(crate) fn move_xyzabc(
     };
     while let Some(&(axis, target)) = left.last() {
         if let Some(pause) = step(parts, caller, (axis, target), progress) {
-            parts.calls.keep(caller, Continuation::Moves(left, pause.then));
+            parts.calls.store(caller, Continuation::Moves(left, pause.then));
             return Outcome::Wait(pause.wake);
         }
         // Even for an axis that is disabled or beyond a limit.
@@ -82,8 +82,8 @@ fn step(
             costs::spend(caller, costs::REFUSED);
             return None;
         }
-        replaced::begins(parts, caller, axis, function, CommandedMotion::Move(target));
-        axis_check::moved(parts, caller, function, axis);
+        replaced::check_begin(parts, caller, axis, function, CommandedMotion::Move(target));
+        axis_check::check_move(parts, caller, function, axis);
         axis_check::target_beyond(parts, caller, function, axis, target);
     }
     let target = target.clamp(-FARTHEST, FARTHEST);
@@ -101,7 +101,7 @@ fn step(
 }
 
 /// The axes of the letters and their targets.
-fn moves(caller: &Caller<'_>, targets: [f64; 6]) -> Vec<(AxisId, f64)> {
+fn axis_targets(caller: &Caller<'_>, targets: [f64; 6]) -> Vec<(AxisId, f64)> {
     let letters = system::letters(caller.memory).into_iter().zip(targets);
     letters.filter_map(|(axis, target)| Some((axis?, target))).collect()
 }
@@ -119,7 +119,7 @@ fn notice_letters(parts: &mut Parts, caller: &Caller<'_>, targets: [f64; 6]) {
 /// Plans all axes in the slice after the call, as firmware 5 does: it waits even if all axes are at rest.
 fn all_at_once(parts: &mut Parts, caller: &mut Caller<'_>, targets: [f64; 6]) -> Outcome<()> {
     let function = Function::MoveXYZABC;
-    let moves = moves(caller, targets);
+    let moves = axis_targets(caller, targets);
     if caller.woken.is_none() && caller.thread.is_some() {
         let wake = moves.first().and_then(|&(axis, _)| schedule::planning_wait(parts, caller, axis));
         return Outcome::Wait(wake.unwrap_or(Wake::NextSlice));
@@ -130,8 +130,8 @@ fn all_at_once(parts: &mut Parts, caller: &mut Caller<'_>, targets: [f64; 6]) ->
     notice_letters(parts, caller, targets);
     for (axis, target) in moves {
         if may_move(parts, caller, axis, function) && is_number(parts, caller, function, target) {
-            replaced::begins(parts, caller, axis, function, CommandedMotion::Move(target));
-            axis_check::moved(parts, caller, function, axis);
+            replaced::check_begin(parts, caller, axis, function, CommandedMotion::Move(target));
+            axis_check::check_move(parts, caller, function, axis);
             axis_check::target_beyond(parts, caller, function, axis, target);
             let target = target.clamp(-FARTHEST, FARTHEST);
             match limits(caller.memory, axis, None) {

@@ -101,17 +101,23 @@ const MOST_LOADS: usize = 4;
 
 impl Races {
     /// A context has loaded `size` bytes.
-    pub(super) fn loaded(&mut self, actor: Actor, (address, size): (u32, u32), value: u64, out: &mut Out) {
+    pub(super) fn record_load(
+        &mut self,
+        actor: Actor,
+        (address, size): (u32, u32),
+        value: u64,
+        out: &mut Out,
+    ) {
         let own = index(actor.thread);
         let (clock, mark, order) = (self.tracks[own].clock, self.mark(actor), self.tracks[own].order);
         let last = self.tracks[own].last_load.replace((address, actor.now));
-        let Some(cell) = self.cells.at(address) else { return };
+        let Some(cell) = self.cells.cell_mut(address) else { return };
         let before = match &cell.uses[own].load {
             Some(load) if load.store == cell.stores => load.before,
             _ => clock,
         };
         let is_spinning = last.is_some_and(|(last, _)| last == address);
-        let spun = match cell.uses[own].replacing() {
+        let spun = match cell.uses[own].load_before_store() {
             Some(load) if is_spinning => load.spun,
             _ => before,
         };
@@ -126,11 +132,11 @@ impl Races {
         let Some(writer) = cell.writer.filter(|writer| writer.context != own) else { return };
         let (stores, posts) = (cell.uses[writer.context].stores, cell.uses[writer.context].posts);
         let is_unordered = writer.epoch > before[writer.context];
-        let shares_lock = writer.locks.shares(mark.locks);
+        let shares_lock = writer.locks.intersects(mark.locks);
         join(&mut self.tracks[own].clock, &writer.clock);
         if size == 8 && writer.tears && is_unordered && !shares_lock && stores > 1 && !is_of_axis(address) {
             let other = OtherPlace { thread: context(writer.context), at: writer.at };
-            if !self.reports.knows(actor.at, writer.at) {
+            if !self.reports.is_reported(actor.at, writer.at) {
                 let cell = self.name_of(address, size);
                 self.report(out, actor, writer.at, Message::RaceTorn { other, cell });
             }
@@ -157,7 +163,7 @@ impl Races {
     }
 
     /// Notes that a context has stored `size` bytes; `made_of` are the loads on which the value depends.
-    pub(super) fn stored(
+    pub(super) fn record_store(
         &mut self,
         actor: Actor,
         (address, size): (u32, u32),
@@ -169,19 +175,19 @@ impl Races {
         let own = index(actor.thread);
         let (clock, mark) = (self.tracks[own].clock, self.mark(actor));
         self.tracks[own].last_store = Some(address);
-        let Some(cell) = self.cells.at(address) else { return };
+        let Some(cell) = self.cells.cell_mut(address) else { return };
         let store = Store { own, clock, mark: &mark, value, size, address };
         let source = cell.uses[own].source(made_of);
-        let claimed = cell.claim(&store, source.as_ref(), actor.now);
+        let claimed = cell.claiming_load(&store, source.as_ref(), actor.now);
         let conflicts = [
             cell.update_conflict(&store, source.as_ref()),
             claimed.as_ref().and_then(|load| cell.claim_conflict(&store, load)),
             cell.request_conflict(&store),
             cell.torn_conflict(&store),
         ];
-        let lost = cell.lost(own, source.as_ref());
+        let lost = cell.lost_update(own, source.as_ref());
         let is_change = size > 8 || cell.writer.as_ref().map_or(0, |writer| writer.value) != value;
-        cell.note(&store, actor, source.as_ref(), claimed.is_some());
+        cell.record_store(&store, actor, source.as_ref(), claimed.is_some());
         if is_change {
             self.note_change(own, address);
             let change = CellChange { by: own, at: actor.at, number: self.changes };
@@ -198,14 +204,14 @@ impl Races {
         }
         if value == 0 {
             self.order_done(actor, address, out);
-            self.freed(actor, address);
+            self.free_lock(actor, address);
         }
     }
 
     /// Reports a possible conflict.
     fn report_conflict(&mut self, actor: Actor, (address, size): (u32, u32), found: Conflict, out: &mut Out) {
         let Conflict { at, by, kind } = found;
-        if self.reports.suspects(actor.at, at) {
+        if self.reports.is_in_conflict(actor.at, at) {
             return;
         }
         if let Some((actor, other)) = with_call_back(actor, OtherPlace { thread: context(by), at }) {
@@ -238,7 +244,7 @@ impl Races {
         when: Cycles,
         out: &mut Out,
     ) {
-        if self.reports.knows(actor.at, at) || !self.reports.suspects(actor.at, at) {
+        if self.reports.is_reported(actor.at, at) || !self.reports.is_in_conflict(actor.at, at) {
             return;
         }
         let cell = self.name_of(address, size);
@@ -327,7 +333,7 @@ impl Cell {
     ) -> Option<CellChange> {
         let writer = self.writer.as_ref().filter(|writer| writer.context != own && self.stores > 1)?;
         let is_unordered = writer.epoch > clock[writer.context];
-        let shares_lock = writer.locks.shares(locks);
+        let shares_lock = writer.locks.intersects(locks);
         self.change.filter(|_| is_unordered && !shares_lock)
     }
 
@@ -336,17 +342,17 @@ impl Cell {
     pub(super) fn unordered_epoch(&self, writer: usize, clock: &VectorClock, locks: LockSet) -> Option<u32> {
         let last = self.writer.as_ref().filter(|last| last.context == writer && self.stores > 2)?;
         let is_unordered = last.epoch > clock[writer];
-        let shares_lock = last.locks.shares(locks);
+        let shares_lock = last.locks.intersects(locks);
         (is_unordered && !shares_lock).then_some(last.epoch)
     }
 
     /// Takes up a store.
-    fn note(&mut self, store: &Store<'_>, actor: Actor, source: Option<&Load>, is_claim: bool) {
+    fn record_store(&mut self, store: &Store<'_>, actor: Actor, source: Option<&Load>, is_claim: bool) {
         let Store { own, clock, mark, value, size, address } = *store;
         let used = &mut self.uses[own];
         used.stores += 1;
         if source.is_none() {
-            used.replaced = used.replacing().map(|load| load.value).or(used.replaced);
+            used.replaced = used.load_before_store().map(|load| load.value).or(used.replaced);
         }
         used.stored = Some(actor.now);
         used.posts += u32::from(value != 0);
@@ -426,7 +432,7 @@ impl Use {
     }
 
     /// The load after which its next store comes, if it has loaded since its last store.
-    pub(super) fn replacing(&self) -> Option<&Load> {
+    pub(super) fn load_before_store(&self) -> Option<&Load> {
         self.load.as_ref().filter(|load| self.stored.is_none_or(|stored| stored < load.now))
     }
 }

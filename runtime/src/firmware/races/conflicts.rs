@@ -3,7 +3,7 @@
 use kmotiondef::{CodeAddr, Cycles};
 
 use super::cells::{Cell, Load};
-use super::{AccessMark, CLAIM_TIME, VectorClock, conflict, is_of_axis, is_request};
+use super::{AccessMark, CLAIM_TIME, VectorClock, find_conflict, is_of_axis, is_request};
 
 /// A store that is being processed.
 #[derive(Debug)]
@@ -41,7 +41,12 @@ pub(super) enum ConflictKind {
 
 impl Cell {
     /// The load after which a store takes the cell, which was free.
-    pub(super) fn claim(&self, store: &Store<'_>, source: Option<&Load>, now: Cycles) -> Option<Load> {
+    pub(super) fn claiming_load(
+        &self,
+        store: &Store<'_>,
+        source: Option<&Load>,
+        now: Cycles,
+    ) -> Option<Load> {
         let used = &self.uses[store.own];
         used.load.filter(|load| {
             let is_fresh = used.stored.is_none_or(|stored| stored < load.now);
@@ -51,7 +56,7 @@ impl Cell {
     }
 
     /// The store by another context that came between a load and the store of a value computed from it, and its time.
-    pub(super) fn lost(&self, own: usize, source: Option<&Load>) -> Option<(Conflict, Cycles)> {
+    pub(super) fn lost_update(&self, own: usize, source: Option<&Load>) -> Option<(Conflict, Cycles)> {
         let load = source?;
         let writer = self.writer.as_ref().filter(|writer| writer.context != own && writer.now > load.now)?;
         let is_update =
@@ -68,9 +73,10 @@ impl Cell {
         let updates = self.uses.iter().filter(|(other, _)| counts(other));
         let updates = updates.filter_map(|(other, used)| Some((other, used.update?)));
         // A store that follows a load of always the same value waits for that value.
-        let replaced = used.replacing().filter(|load| used.replaced.is_some_and(|last| last != load.value));
+        let replaced =
+            used.load_before_store().filter(|load| used.replaced.is_some_and(|last| last != load.value));
         let clock = source.or(replaced).map_or(&store.clock, |load| &load.before);
-        let (by, at) = conflict(updates, store.own, clock, store.mark.locks)?;
+        let (by, at) = find_conflict(updates, store.own, clock, store.mark.locks)?;
         let kind = if source.is_some() { ConflictKind::Update } else { ConflictKind::Store };
         Some(Conflict { at, by, kind })
     }
@@ -83,7 +89,7 @@ impl Cell {
             let differs = taken != store.value || used.releases || self.uses[own].releases;
             differs.then_some((other, claim))
         });
-        let (by, at) = conflict(claims, own, &load.spun, store.mark.locks)?;
+        let (by, at) = find_conflict(claims, own, &load.spun, store.mark.locks)?;
         Some(Conflict { at, by, kind: ConflictKind::Claim })
     }
 
@@ -93,7 +99,7 @@ impl Cell {
             return None;
         }
         let requests = self.uses.iter().filter_map(|(other, used)| Some((other, used.request?)));
-        let (by, at) = conflict(requests, store.own, &store.clock, store.mark.locks)?;
+        let (by, at) = find_conflict(requests, store.own, &store.clock, store.mark.locks)?;
         Some(Conflict { at, by, kind: ConflictKind::Request })
     }
 
@@ -106,7 +112,7 @@ impl Cell {
             return None;
         }
         let loads = self.uses.iter().filter_map(|(other, used)| Some((other, used.wide_load?)));
-        let (by, at) = conflict(loads, store.own, &store.clock, store.mark.locks)?;
+        let (by, at) = find_conflict(loads, store.own, &store.clock, store.mark.locks)?;
         Some(Conflict { at, by, kind: ConflictKind::Torn })
     }
 }

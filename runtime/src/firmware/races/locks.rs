@@ -24,7 +24,7 @@ pub(super) struct LockSet(u64);
 
 impl LockSet {
     /// Returns whether a lock is in both.
-    pub(super) const fn shares(self, other: Self) -> bool {
+    pub(super) const fn intersects(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 }
@@ -59,17 +59,17 @@ impl Races {
             let clock = known.clock;
             join(&mut self.tracks[own].clock, &clock);
             if !self.tracks[own].held.iter().any(|(known, _)| *known == lock) {
-                self.holds(own, lock, actor.at);
+                self.hold_lock(own, lock, actor.at);
             }
         }
     }
 
     /// Notes that a context has taken a free cell by `TestAndSet`.
-    pub(crate) fn takes(&mut self, actor: Actor, lock: GuestAddr) {
+    pub(crate) fn record_lock(&mut self, actor: Actor, lock: GuestAddr) {
         let (own, lock) = (index(actor.thread), lock.get());
         let clock = self.lock(lock).clock;
         join(&mut self.tracks[own].clock, &clock);
-        self.holds(own, lock, actor.at);
+        self.hold_lock(own, lock, actor.at);
     }
 
     /// The lock at an address.
@@ -79,7 +79,7 @@ impl Races {
     }
 
     /// A context holds one more lock.
-    fn holds(&mut self, own: usize, lock: u32, at: CodeAddr) {
+    fn hold_lock(&mut self, own: usize, lock: u32, at: CodeAddr) {
         self.tracks[own].held.push((lock, at));
         self.note_held(own);
     }
@@ -93,12 +93,12 @@ impl Races {
     }
 
     /// Notes that a context frees a lock, which any context may hold.
-    pub(crate) fn unlocks(&mut self, actor: Actor, lock: GuestAddr) {
-        self.freed(actor, lock.get());
+    pub(crate) fn record_unlock(&mut self, actor: Actor, lock: GuestAddr) {
+        self.free_lock(actor, lock.get());
     }
 
     /// Notes that a context has stored 0 in a cell that may be a lock.
-    pub(super) fn freed(&mut self, actor: Actor, lock: u32) {
+    pub(super) fn free_lock(&mut self, actor: Actor, lock: u32) {
         let own = index(actor.thread);
         let Some(known) = self.locks.get_mut(&lock) else { return };
         join(&mut known.clock, &self.tracks[own].clock);

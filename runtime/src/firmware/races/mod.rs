@@ -169,7 +169,7 @@ pub(crate) struct Actor {
 impl Races {
     /// Notes the beginning of a thread: the actions of threads that have ended, or that began long before, are ordered
     /// before it.
-    pub(crate) fn begins(&mut self, thread: ThreadId, threads: &Threads, now: Cycles) {
+    pub(crate) fn begin_thread(&mut self, thread: ThreadId, threads: &Threads, now: Cycles) {
         let own = index(Some(thread));
         let mut clock = self.tracks[own].clock;
         join(&mut clock, &self.tracks[own].starter);
@@ -195,7 +195,7 @@ impl Races {
     }
 
     /// A thread starts another.
-    pub(crate) fn starts(&mut self, actor: Actor, started: ThreadId, threads: &Threads, out: &mut Out) {
+    pub(crate) fn record_start(&mut self, actor: Actor, started: ThreadId, threads: &Threads, out: &mut Out) {
         let has_begun = !matches!(threads.state(started), ThreadState::Active(Progress::Fresh));
         if actor.thread != Some(started) && threads.state(started).is_active() && has_begun {
             self.report(out, actor, actor.at, Message::ThreadRestarted { thread: started });
@@ -208,7 +208,7 @@ impl Races {
     }
 
     /// Processes an access by a program; rules and names use addresses of the tables.
-    pub(crate) fn accessed(
+    pub(crate) fn record_access(
         &mut self,
         access: &SharedAccess<'_>,
         memory: &GuestMemory,
@@ -229,14 +229,14 @@ impl Races {
                 false => access.value,
             };
             if access.is_store {
-                self.stored(actor, (address, size), value, access.made_of, out);
+                self.record_store(actor, (address, size), value, access.made_of, out);
                 self.sets_call_back(actor, address, value);
                 continue;
             }
             if !access.made_of.is_empty() {
                 self.reads_together(actor, (address, size), access.made_of, out);
             }
-            self.loaded(actor, (address, size), value, out);
+            self.record_load(actor, (address, size), value, out);
         }
         if is_block || self.may_tell_more(access, address) {
             RepeatPolicy::Reported
@@ -285,11 +285,11 @@ impl Races {
 
     /// A function of the firmware changes a word in one step.
     pub(crate) fn changed_at_once(&mut self, actor: Actor, place: GuestAddr, value: i32, out: &mut Out) {
-        self.stored(actor, (place.get(), 4), u64::from(value.cast_unsigned()), &[], out);
+        self.record_store(actor, (place.get(), 4), u64::from(value.cast_unsigned()), &[], out);
     }
 
     /// A call switches an output of Kanalog, which the firmware does by load and store of a word for 16 of them.
-    pub(crate) fn switched(&mut self, actor: Actor, bit: i32, out: &mut Out) {
+    pub(crate) fn record_output_switch(&mut self, actor: Actor, bit: i32, out: &mut Out) {
         if !(144..=167).contains(&bit) {
             return;
         }
@@ -303,7 +303,7 @@ impl Races {
         let marks = self.things.entry(thing).or_default();
         marks[own] = Some(mark);
         let marks = marks.iter().enumerate().filter_map(|(other, mark)| Some((other, (*mark)?)));
-        let conflict = conflict(marks, own, &clock, mark.locks);
+        let conflict = find_conflict(marks, own, &clock, mark.locks);
         if let Some((other, at)) = conflict {
             let other = OtherPlace { thread: context(other), at };
             let message = match thing {
@@ -356,14 +356,14 @@ impl Races {
 
 /// The first mark of another context that is not ordered before the knowledge in `clock` and shares no lock with
 /// `locks`.
-fn conflict(
+fn find_conflict(
     mut marks: impl Iterator<Item = (usize, AccessMark)>,
     own: usize,
     clock: &VectorClock,
     locks: LockSet,
 ) -> Option<(usize, CodeAddr)> {
     let is_conflict = |(other, mark): &(usize, AccessMark)| {
-        *other != own && mark.epoch > clock[*other] && !mark.locks.shares(locks)
+        *other != own && mark.epoch > clock[*other] && !mark.locks.intersects(locks)
     };
     marks.find(is_conflict).map(|(other, mark)| (other, mark.at))
 }

@@ -98,7 +98,7 @@ impl Races {
         }
         let (Some(CellChange { by, at, .. }), Some(part)) = (change, older.or(first)) else { return };
         let counts = |address: &u32| self.cells.get(*address).is_some_and(|cell| cell.is_updated_by(by));
-        if self.reports.knows(actor.at, at) || [address, part.address].iter().all(counts) {
+        if self.reports.is_reported(actor.at, at) || [address, part.address].iter().all(counts) {
             return;
         }
         let is_seen = older.is_some();
@@ -131,7 +131,7 @@ impl Races {
         let cells = (0..count).filter_map(|word| self.cells.get(address + 4 * word));
         let mut written = cells.filter_map(|cell| cell.unordered_writer(own, &clock, locks));
         let (Some(CellChange { by, at, .. }), Some(_)) = (written.next(), written.next()) else { return };
-        if !self.reports.knows(actor.at, at) {
+        if !self.reports.is_reported(actor.at, at) {
             let other = OtherPlace { thread: context(by), at };
             let is_seen = false;
             self.found_half(own, TornRead { actor, cell: address, size: 4, other, is_seen }, out);

@@ -38,12 +38,12 @@ fn places(one: CodeAddr, other: CodeAddr) -> PlacePair {
 
 impl Reports {
     /// Returns whether two places were reported already.
-    pub(super) fn knows(&self, one: CodeAddr, other: CodeAddr) -> bool {
+    pub(super) fn is_reported(&self, one: CodeAddr, other: CodeAddr) -> bool {
         self.made.contains(&places(one, other))
     }
 
     /// Returns whether two places are known to be in conflict, reported or not.
-    pub(super) fn suspects(&self, one: CodeAddr, other: CodeAddr) -> bool {
+    pub(super) fn is_in_conflict(&self, one: CodeAddr, other: CodeAddr) -> bool {
         let places = places(one, other);
         self.made.contains(&places) || self.waiting.contains_key(&places)
     }
@@ -60,7 +60,7 @@ impl Reports {
     /// Delays a report, so that one with more details can replace it.
     fn wait(&mut self, actor: Actor, other: CodeAddr, message: Message) {
         let places = places(actor.at, other);
-        if !self.suspects(actor.at, other) {
+        if !self.is_in_conflict(actor.at, other) {
             self.waiting.insert(places, PendingReport { actor, message });
             self.due.get_or_insert(actor.now + PATIENCE);
         }

@@ -19,7 +19,7 @@ pub(crate) enum SharedCall {
 }
 
 /// Examines a call that is about to be made.
-pub(crate) fn before(parts: &mut Parts, function: Function, caller: &Caller<'_>) -> SharedCall {
+pub(crate) fn examine_call(parts: &mut Parts, function: Function, caller: &Caller<'_>) -> SharedCall {
     let place = || GuestAddr::new(caller.arguments.get(0));
     let (Parts { races: Some(races), out, .. }, Some(actor)) = (parts, actor(caller)) else {
         return SharedCall::Other;
@@ -31,12 +31,12 @@ pub(crate) fn before(parts: &mut Parts, function: Function, caller: &Caller<'_>)
         Function::AtomicSet | Function::AtomicClear => SharedCall::Change(place()),
         Function::StartThread => {
             if let Some(started) = ThreadId::new(caller.arguments.get(0)) {
-                races.starts(actor, started, caller.threads, out);
+                races.record_start(actor, started, caller.threads, out);
             }
             SharedCall::Other
         }
         Function::SetBit | Function::ClearBit | Function::SetStateBit => {
-            races.switched(actor, caller.arguments.get(0), out);
+            races.record_output_switch(actor, caller.arguments.get(0), out);
             SharedCall::Other
         }
         Function::PauseThread => {
@@ -47,7 +47,7 @@ pub(crate) fn before(parts: &mut Parts, function: Function, caller: &Caller<'_>)
         }
         Function::ResumeThread => {
             if let Some(resumed) = ThreadId::new(caller.arguments.get(0)) {
-                races.resumes(actor, resumed, out);
+                races.record_resume(actor, resumed, out);
             }
             SharedCall::Other
         }
@@ -83,8 +83,8 @@ pub(crate) fn after(parts: &mut Parts, call: SharedCall, outcome: &Outcome<Value
     }
     match call {
         SharedCall::Lock(lock) => races.locks(actor, lock, is_done, out),
-        SharedCall::Unlock(lock) => races.unlocks(actor, lock),
-        SharedCall::TestAndSet(lock) if is_taken => races.takes(actor, lock),
+        SharedCall::Unlock(lock) => races.record_unlock(actor, lock),
+        SharedCall::TestAndSet(lock) if is_taken => races.record_lock(actor, lock),
         SharedCall::Change(place) => {
             races.changed_at_once(actor, place, caller.memory.peek(place), out);
         }

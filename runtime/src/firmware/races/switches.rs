@@ -39,7 +39,7 @@ impl Switches {
 
     /// The point at which a thread is switched at an access that it is about to make; an eight-byte store has two
     /// points.
-    pub(crate) fn at(&mut self, access: &NextAccess, out: &mut Out) -> Option<SwitchPoint> {
+    pub(crate) fn switch_point(&mut self, access: &NextAccess, out: &mut Out) -> Option<SwitchPoint> {
         let NextAccess { thread, at, address, size, is_store, now } = *access;
         let accesses = &mut self.threads[thread.index()];
         let this = Some((at, address));
@@ -80,7 +80,7 @@ impl Switches {
     }
 
     /// Notes that a thread has made an access.
-    pub(crate) fn made(&mut self, thread: ThreadId, at: CodeAddr, address: GuestAddr) {
+    pub(crate) fn record_access(&mut self, thread: ThreadId, at: CodeAddr, address: GuestAddr) {
         let accesses = &mut self.threads[thread.index()];
         accesses.next = None;
         accesses.last = Some((at, address));

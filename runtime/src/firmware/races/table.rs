@@ -51,7 +51,7 @@ impl Cells {
     }
 
     /// The cell at an address; `None` where threads share no memory.
-    pub(super) fn at(&mut self, address: u32) -> Option<&mut Cell> {
+    pub(super) fn cell_mut(&mut self, address: u32) -> Option<&mut Cell> {
         let (page, offset) = place_of(address)?;
         if self.pages.len() <= page {
             self.pages.resize(page + 1, None);
@@ -116,9 +116,9 @@ mod tests {
         let addresses = [0x8010_0004, 0x1001_6E00, 0x1001_6E01, 0x80FF_FFFC];
         for address in addresses {
             assert!(cells.get(address).is_none());
-            cells.at(address).expect("it is RAM").uses[2].stores = address;
+            cells.cell_mut(address).expect("it is RAM").uses[2].stores = address;
         }
-        assert!(cells.at(0x9000_0000).is_none());
+        assert!(cells.cell_mut(0x9000_0000).is_none());
         for address in addresses {
             assert_eq!(cells.get(address).map(|cell| cell.uses[2].stores), Some(address));
         }

@@ -10,7 +10,7 @@ fn codes(steps: &str) -> Vec<&'static str> {
     let (mut races, mut out, memory) = (Races::default(), Out::default(), GuestMemory::new());
     let threads = Threads::new();
     for number in [1, 2] {
-        races.begins(ThreadId::new(number).expect("it is a thread"), &threads, Cycles::default());
+        races.begin_thread(ThreadId::new(number).expect("it is a thread"), &threads, Cycles::default());
     }
     for (number, step) in (0..).zip(steps.split_whitespace()) {
         let thread = ThreadId::new(i32::from(step.as_bytes()[0] - b'0'));
@@ -29,7 +29,7 @@ fn codes(steps: &str) -> Vec<&'static str> {
         };
         let actor = Actor { thread, at: at(0), now };
         let mut accessed = |access| {
-            races.accessed(&access, &memory, &mut out);
+            races.record_access(&access, &memory, &mut out);
         };
         match step.as_bytes()[1] {
             b'l' => accessed(access(false, &[])),
@@ -39,7 +39,7 @@ fn codes(steps: &str) -> Vec<&'static str> {
                 accessed(access(true, &made_of));
             }
             b'L' => races.locks(actor, place, true, &mut out),
-            b'U' => races.unlocks(actor, place),
+            b'U' => races.record_unlock(actor, place),
             b'A' => races.changed_at_once(actor, place, 1, &mut out),
             other => panic!("{other}"),
         }

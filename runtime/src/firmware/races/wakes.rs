@@ -29,19 +29,19 @@ impl Races {
         let own = index(actor.thread);
         let tested = self.tracks[own].last_load.filter(|(_, then)| actor.now - *then < CLAIM_TIME);
         self.tracks[own].paused = tested.map(|(cell, _)| PausedThread { cell, actor });
-        self.overtaken(own, out);
+        self.check_lost_wakeup(own, out);
     }
 
     /// A context resumes a thread.
-    pub(crate) fn resumes(&mut self, actor: Actor, resumed: ThreadId, out: &mut Out) {
+    pub(crate) fn record_resume(&mut self, actor: Actor, resumed: ThreadId, out: &mut Out) {
         let (by, own) = (index(actor.thread), index(Some(resumed)));
         let stored = self.tracks[by].last_store.filter(|_| by != own);
         self.tracks[own].resumed = stored.map(|cell| ResumeCall { cell, by, at: actor.at });
-        self.overtaken(own, out);
+        self.check_lost_wakeup(own, out);
     }
 
     /// Reports a pause and a call that resumes it if they are about the same cell.
-    fn overtaken(&mut self, own: usize, out: &mut Out) {
+    fn check_lost_wakeup(&mut self, own: usize, out: &mut Out) {
         let (Some(paused), Some(resumed)) = (self.tracks[own].paused, self.tracks[own].resumed) else {
             return;
         };

@@ -44,7 +44,7 @@ impl Banks {
     /// Makes a single bank visible from now on, initially the first.
     pub(crate) fn be_strict(&mut self, memory: &mut GuestMemory) {
         self.chip = Some(Chip { bytes: flash(memory), bank: 0 });
-        self.show(memory);
+        self.map_into(memory);
     }
 
     /// Selects the bank of an address. The boot sector is refused, and the users' first bank is selected in its place.
@@ -55,7 +55,7 @@ impl Banks {
         let is_refused = offset < BOOT_SECTOR && !COMMANDS.contains(&address);
         if let Some(chip) = &mut self.chip {
             chip.bank = (if is_refused { USER } else { offset }) as usize / BANK;
-            self.show(memory);
+            self.map_into(memory);
         }
         let bank = address & BANK_BITS;
         if is_refused && self.refused.replace(bank) != Some(bank) { Err(BankRefused) } else { Ok(()) }
@@ -74,7 +74,7 @@ impl Banks {
         if let Some(chip) = &mut self.chip {
             chip.bytes = flash(memory);
         }
-        self.show(memory);
+        self.map_into(memory);
         result
     }
 
@@ -83,7 +83,7 @@ impl Banks {
         self.chip.as_ref().map(|chip| &*chip.bytes)
     }
 
-    fn show(&self, memory: &mut GuestMemory) {
+    fn map_into(&self, memory: &mut GuestMemory) {
         let Some(Chip { bytes, bank }) = &self.chip else { return };
         let seen = &bytes[bank * BANK..][..BANK];
         store(memory, &seen.repeat(FLASH_SIZE / BANK));

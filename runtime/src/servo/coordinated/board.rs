@@ -85,7 +85,7 @@ mod tests {
     }
 
     fn put_command(memory: &mut GuestMemory, entry: Entry, command: Command) {
-        let (number, bit) = command.encoded();
+        let (number, bit) = command.encode();
         memory.set(entry.field(ParametricCoeff::TRAJECTORY_MODE), TrajectoryMode::Special.get() as i8);
         memory.set(entry.field(ParametricCoeff::X_AXIS), number);
         memory.set(entry.field(ParametricCoeff::SPECIAL_PARAM), bit);

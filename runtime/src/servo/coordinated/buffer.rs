@@ -37,7 +37,7 @@ pub(crate) fn after(memory: &GuestMemory, entry: Entry) -> Entry {
 }
 
 /// The entry before another; `None` at the beginning of the buffer and outside it.
-pub(crate) fn before(memory: &GuestMemory, entry: Entry) -> Option<Entry> {
+pub(crate) fn previous_entry(memory: &GuestMemory, entry: Entry) -> Option<Entry> {
     let (start, end) = (memory.get(PARAMETRIC_COEFFS), memory.get(PARAMETRIC_COEFFS_END));
     let address = entry.address();
     if address <= start || address >= end {
@@ -178,10 +178,10 @@ mod tests {
         let mut memory = board();
         let (first, last) = (entry(&memory, 0), entry(&memory, MAX_SEGMENTS as i32 - 1));
         assert_eq!(after(&memory, last).address(), first.address());
-        assert!(before(&memory, first).is_none());
+        assert!(previous_entry(&memory, first).is_none());
         memory.set(PARAMETRIC_INDEX_WRAPPED, 1);
-        assert_eq!(before(&memory, first).map(Entry::address), Some(last.address()));
-        assert!(before(&memory, Entry::at(kmotiondef::GuestAddr::new(0x8005_0000))).is_none());
+        assert_eq!(previous_entry(&memory, first).map(Entry::address), Some(last.address()));
+        assert!(previous_entry(&memory, Entry::at(kmotiondef::GuestAddr::new(0x8005_0000))).is_none());
     }
 
     #[test]

@@ -140,7 +140,7 @@ pub(crate) fn arc(
 /// As [`buffer::advance`].
 pub(crate) fn command(memory: &mut GuestMemory, command: Command) -> Result<(), Message> {
     let entry = buffer::next_written(memory);
-    let (number, bit) = command.encoded();
+    let (number, bit) = command.encode();
     set_mode(memory, entry, TrajectoryMode::Special);
     memory.set(entry.field(ParametricCoeff::X_AXIS), number);
     memory.set(entry.field(ParametricCoeff::SPECIAL_PARAM), bit);

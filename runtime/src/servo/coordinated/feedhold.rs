@@ -64,7 +64,7 @@ pub(crate) fn stop(memory: &mut GuestMemory) -> bool {
     if executing {
         let time = memory.get(CS0_DECEL_TIME).max(LEAST_STOPPING_TIME);
         memory.set(CS0_DECEL_TIME, time);
-        rate::aim(memory, 0.0, time);
+        rate::ramp_to_override(memory, 0.0, time);
         memory.set(CS0_STOPPING_STATE, HoldState::StoppingPath.number());
     }
     executing
@@ -75,7 +75,7 @@ pub(crate) fn resume(memory: &mut GuestMemory) -> bool {
     let held = is_path_held(memory);
     if held {
         memory.set(CS0_STOPPING_STATE, HoldState::Running.number());
-        rate::aim(memory, rate::current_override(memory), system::nominal_change_time(memory));
+        rate::ramp_to_override(memory, rate::current_override(memory), system::nominal_change_time(memory));
     }
     held
 }

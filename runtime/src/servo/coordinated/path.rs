@@ -211,7 +211,7 @@ fn go_back(memory: &mut GuestMemory, mut entry: Entry) -> Entry {
 fn stretch_before(memory: &mut GuestMemory, mut entry: Entry) -> Option<Entry> {
     let mut rapid = None;
     for _ in 0..MAX_SEGMENTS {
-        entry = buffer::before(memory, entry)?;
+        entry = buffer::previous_entry(memory, entry)?;
         match entry.kind(memory) {
             Kind::Off => return None,
             Kind::Segment(_) => {

@@ -36,7 +36,7 @@ pub(crate) fn set_rapid(memory: &mut GuestMemory, fro: f32, time: f32) {
 }
 
 /// Ramps to an override even in feedhold; a resume does not restore the previous one.
-pub(crate) fn aim(memory: &mut GuestMemory, fro: f32, time: f32) {
+pub(crate) fn ramp_to_override(memory: &mut GuestMemory, fro: f32, time: f32) {
     memory.set(CS0_TIME_BASE_DESIRED, f64::from(fro) * TIMEBASE);
     memory.set(CS0_TIME_BASE_DELTA, change_per_tick(time));
 }
@@ -44,7 +44,7 @@ pub(crate) fn aim(memory: &mut GuestMemory, fro: f32, time: f32) {
 /// Ramps to the override that applies; in a feedhold, only the rate of the change is updated.
 fn aim_unless_held(memory: &mut GuestMemory, time: f32) {
     if HoldState::of(memory) == HoldState::Running {
-        aim(memory, current_override(memory), time);
+        ramp_to_override(memory, current_override(memory), time);
     } else {
         memory.set(CS0_TIME_BASE_DELTA, change_per_tick(time));
     }
@@ -98,7 +98,7 @@ pub(crate) fn ramp(memory: &mut GuestMemory) {
 }
 
 /// Returns whether a path at the rate `now` must stop for lack of segments: more may come, as `CS0_Flushed` is 0.
-pub(crate) fn starves(memory: &GuestMemory, now: f64) -> bool {
+pub(crate) fn is_starved(memory: &GuestMemory, now: f64) -> bool {
     let desired = memory.get(CS0_TIME_BASE_DESIRED);
     let position = memory.get(CS0_TIME_EXECUTED) + memory.get(CS0_T);
     let stopping = f64::from(memory.get(CS0_NOM_DECEL_2TB2)) * now * now;
@@ -112,7 +112,7 @@ fn aim_within_data(memory: &GuestMemory, now: f64) -> f64 {
     let position = memory.get(CS0_TIME_EXECUTED) + memory.get(CS0_T);
     let stopping = f64::from(memory.get(CS0_NOM_DECEL_2TB2)) * now * now;
     let lost = memory.get(CS0_TIME_LOST);
-    let starves = starves(memory, now);
+    let starves = is_starved(memory, now);
     let has_wrapped = memory.get(PARAMETRIC_INDEX_WRAPPED) != 0;
     let starves_behind = has_wrapped && desired < 0.0 && now <= 0.0 && position - lost - RESERVE < stopping;
     if starves || starves_behind { 0.0 } else { desired }
@@ -133,7 +133,7 @@ mod tests {
         set_feed(&mut memory, 0.5, 1.0);
         assert_eq!(memory.get(CS0_LAST_FRO), 0.5);
         assert_eq!(memory.get(CS0_TIME_BASE_DESIRED), TIMEBASE);
-        aim(&mut memory, -0.5, 1.0);
+        ramp_to_override(&mut memory, -0.5, 1.0);
         assert_eq!(memory.get(CS0_TIME_BASE_DESIRED), -0.5 * TIMEBASE);
         assert_eq!(memory.get(CS0_LAST_FRO), 0.5);
     }

@@ -63,7 +63,7 @@ pub(crate) enum Command {
 
 impl Command {
     /// The command's number and bit as an entry holds them.
-    pub(crate) fn encoded(self) -> (u8, i16) {
+    pub(crate) fn encode(self) -> (u8, i16) {
         match self {
             Self::Drive(bit, high) => (u8::from(high), bit.get() as i16),
             Self::Wait(bit, high) => (2 + u8::from(high), bit.get() as i16),
@@ -72,7 +72,7 @@ impl Command {
         }
     }
 
-    fn decoded(number: u8, bit: i16) -> Self {
+    fn decode(number: u8, bit: i16) -> Self {
         let bit = Bit::new(i32::from(bit));
         match (number, bit) {
             (0 | 1, Some(bit)) => Self::Drive(bit, number == 1),
@@ -109,7 +109,7 @@ impl Entry {
         match TrajectoryMode::new(mode) {
             Some(TrajectoryMode::Linear) => Kind::Segment(Shape::Linear),
             Some(TrajectoryMode::Circular) => Kind::Segment(Shape::Circular),
-            Some(TrajectoryMode::Special) => Kind::Command(Command::decoded(
+            Some(TrajectoryMode::Special) => Kind::Command(Command::decode(
                 memory.get(self.field(ParametricCoeff::X_AXIS)),
                 memory.get(self.field(ParametricCoeff::SPECIAL_PARAM)),
             )),
@@ -195,11 +195,11 @@ mod tests {
             Command::Rapid(false),
             Command::Nothing,
         ] {
-            let (number, bit) = command.encoded();
-            assert_eq!(Command::decoded(number, bit), command);
+            let (number, bit) = command.encode();
+            assert_eq!(Command::decode(number, bit), command);
         }
-        assert_eq!(Command::decoded(1, -1), Command::Nothing);
-        assert_eq!(Command::decoded(6, 0), Command::Nothing);
+        assert_eq!(Command::decode(1, -1), Command::Nothing);
+        assert_eq!(Command::decode(6, 0), Command::Nothing);
     }
 
     #[test]

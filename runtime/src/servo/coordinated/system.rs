@@ -8,7 +8,7 @@ use kmotiondef::variables::{
 use kmotiondef::{AxisId, Place};
 use vm::memory::GuestMemory;
 
-use crate::arithmetic::division::{divide_singles, root};
+use crate::arithmetic::division::{divide_singles, square_root};
 use crate::views::TypedAccess;
 
 /// Letters of the coordinate system: x y z a b c u v.
@@ -79,7 +79,7 @@ const TICKS_PER_SECOND: f32 = (1.0 / TIMEBASE) as f32;
 /// twice.
 fn change_time(memory: &GuestMemory, axis: AxisId, velocity: f32) -> f32 {
     let velocity = velocity.abs();
-    let ramps = root(f64::from(divide_singles(2.0 * velocity, memory.axis(axis, Chan::JERK)))) as f32;
+    let ramps = square_root(f64::from(divide_singles(2.0 * velocity, memory.axis(axis, Chan::JERK)))) as f32;
     divide_singles(velocity, memory.axis(axis, Chan::ACCEL)) + 2.0 * ramps
 }
 

@@ -18,7 +18,7 @@ impl Echo {
 
 impl AttachedDevice for Echo {
     fn sent(&mut self, byte: u8, at: Cycles, outside: &mut DeviceContext<'_>) {
-        outside.uart.arrive(&[byte], at);
+        outside.uart.queue_bytes(&[byte], at);
     }
 }
 

@@ -117,7 +117,7 @@ impl AttachedDevice for Modbus {
         if u16::from_le_bytes(sum) == checksum(request) && request[0] == self.address {
             let mut answer = self.answer(request);
             answer.extend(checksum(&answer).to_le_bytes());
-            outside.uart.arrive(&answer, at + self.delay);
+            outside.uart.queue_bytes(&answer, at + self.delay);
         }
     }
 }

@@ -50,7 +50,7 @@ impl Assist {
     }
 
     /// Notes that a program has called a function, which may be one that programs call while they wait.
-    pub(crate) fn called(&mut self, waits: bool, now: Cycles) {
+    pub(crate) fn note_call(&mut self, waits: bool, now: Cycles) {
         if !waits {
             self.polled.clear();
             self.has_helped = true;
@@ -105,10 +105,10 @@ mod tests {
     fn inputs_are_pressed_in_turn_after_two_seconds_of_waiting() {
         let bit = |number| Bit::new(number).expect("a bit");
         let mut assist = Assist::new(ms(0));
-        assist.called(false, ms(500));
+        assist.note_call(false, ms(500));
         assist.polled(bit(10), ASKER);
         assist.polled(bit(136), ASKER);
-        assist.called(true, ms(1000));
+        assist.note_call(true, ms(1000));
         for (at, expect) in [
             (2499, None),
             (2500, Some(Step::Press(bit(10), ASKER))),
@@ -119,7 +119,7 @@ mod tests {
         ] {
             assert_eq!(assist.step(ms(at)), expect, "{at}");
         }
-        assist.called(false, ms(2950));
+        assist.note_call(false, ms(2950));
         assert_eq!(assist.step(ms(3000)), Some(Step::Release(bit(10))));
         assert_eq!(assist.step(ms(4999)), None);
     }

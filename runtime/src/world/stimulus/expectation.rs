@@ -122,7 +122,7 @@ pub(super) struct ExpectationContext<'a> {
     pub(super) view: View<'a>,
     pub(super) threads: ThreadSet,
     /// True if the text of this expectation was printed.
-    pub(super) said: bool,
+    pub(super) is_printed: bool,
 }
 
 impl Facts for ExpectationContext<'_> {
@@ -131,7 +131,7 @@ impl Facts for ExpectationContext<'_> {
     }
 
     fn has_printed(&self, _: &str) -> bool {
-        self.said
+        self.is_printed
     }
 
     fn is_enabled(&self, axis: AxisId) -> bool {
@@ -304,7 +304,7 @@ pub(super) fn check(scene: &mut Scene<'_, '_, '_>, _: Expectation) {
 fn predicate(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
     if reader.is_at_text() {
         let text = reader.string()?;
-        return compared(reader, expression(&text));
+        return parse_comparison(reader, expression(&text));
     }
     let word = reader.peek().unwrap_or_default().to_owned();
     if word.is_empty() {
@@ -323,7 +323,7 @@ fn predicate(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
         "bit" => {
             let bit = reader.bit()?;
             let item = Item::new(&format!("bit{bit}")).expect("every bit is an item");
-            reader.equals()?;
+            reader.expect_equals()?;
             let level = reader.level()?;
             let subject = Subject::Item(item, format!("bit {bit}").into());
             let number = f64::from(u8::from(level));
@@ -335,7 +335,7 @@ fn predicate(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
                 Err(_) => expression(&word),
             };
             reader.advance();
-            compared(reader, subject)
+            parse_comparison(reader, subject)
         }
     }
 }
@@ -364,7 +364,7 @@ fn axis(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
     let what = "`position`, `dest`, `velocity`, `output`, `load`, `enabled` or `disabled`";
     let (name, kind) = reader.take(what, |word| OF_AXIS.iter().find(|(name, _)| *name == word).copied())?;
     let item = Item::among(Axes::new(Axes::MAX), &format!("{kind}{axis}")).expect("every axis has it");
-    compared(reader, Subject::Item(item, format!("axis {axis} {name}").into()))
+    parse_comparison(reader, Subject::Item(item, format!("axis {axis} {name}").into()))
 }
 
 /// An element is read in the form of the number with which it is compared.
@@ -385,7 +385,7 @@ fn persist(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
 }
 
 /// Reads a relation, a number, and possibly a tolerance for an equal value.
-fn compared(reader: &mut StatementReader<'_>, subject: Subject) -> Result<Predicate, Mistake> {
+fn parse_comparison(reader: &mut StatementReader<'_>, subject: Subject) -> Result<Predicate, Mistake> {
     let relation = reader.relation()?;
     let number = reader.take("a number", |word| number(word).or_else(|| integer(word).map(f64::from)))?;
     let tolerance = reader.tolerance()?;

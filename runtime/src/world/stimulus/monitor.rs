@@ -24,7 +24,7 @@ pub(super) struct Progress {
     /// True if the value that it waits for compared as true in the last tick.
     pub(super) was_so: bool,
     /// True if its expected text was printed, after the condition if there is one.
-    pub(super) said: bool,
+    pub(super) is_printed: bool,
     /// Its text as printed in a line, if only letter case differs.
     pub(super) near: Option<String>,
     /// True if it has acted or checked something.
@@ -74,7 +74,8 @@ impl Player {
                 }
                 _ => true,
             };
-            progress.said |= is_in_time && expectation.printed().is_some_and(|text| line.contains(text));
+            progress.is_printed |=
+                is_in_time && expectation.printed().is_some_and(|text| line.contains(text));
         }
     }
 
@@ -87,7 +88,7 @@ impl Player {
             }
             let deadline = at + *limit;
             let progress = &mut self.progress[index];
-            (progress.since, progress.said) = (Some(at), false);
+            (progress.since, progress.is_printed) = (Some(at), false);
             self.plans.add(deadline, DueEvent::Check);
         }
     }
@@ -111,7 +112,7 @@ impl Player {
             let (is_so, _) = self.look(access, context, index, expectation);
             if is_so && !self.progress[index].was_so {
                 let risen = Condition::Becomes(expectation.clone());
-                self.happened(context.now, |condition| *condition == risen);
+                self.trigger_rules(context.now, |condition| *condition == risen);
             }
             self.progress[index].was_so = is_so;
         }
@@ -169,8 +170,11 @@ impl Player {
         expectation: &Expectation,
     ) -> (bool, String) {
         let view = View::new(access.machine, access.io, context.now, context.memory);
-        let look =
-            ExpectationContext { view, threads: context.threads.active(), said: self.progress[index].said };
+        let look = ExpectationContext {
+            view,
+            threads: context.threads.active(),
+            is_printed: self.progress[index].is_printed,
+        };
         let seen = expectation.look(&look);
         (seen.is_met, seen.text)
     }
@@ -191,7 +195,7 @@ impl Player {
             let near = self.progress[index].near.as_deref().filter(|_| expectation.sense == Sense::Is);
             let near = near.map_or(String::new(), |near| format!(" (one contains \"{near}\")"));
             let text = format!("{place}: at {at} s {text}{near}{within}");
-            access.out.tell(context.now, EventKind::Unmet(text));
+            access.out.emit(context.now, EventKind::Unmet(text));
             self.progress[index].told = true;
         }
         self.progress[index].happened = true;
@@ -207,7 +211,7 @@ impl Player {
             } else if !self.progress[index].happened {
                 let place = &self.rules[index].place;
                 let text = format!("{place}: {condition} never happened, so nothing was checked");
-                access.out.tell(context.now, EventKind::Unmet(text));
+                access.out.emit(context.now, EventKind::Unmet(text));
                 self.progress[index].happened = true;
             }
         }
@@ -264,14 +268,14 @@ impl Player {
         let is_forbidden = expectation.sense != Sense::Is && !progress.told;
         let printed = progress.near.clone().filter(|_| is_forbidden && expectation.printed().is_some())?;
         // Whoever writes both means both.
-        let is_known = self.rules.iter().any(|rule| wanted(rule) == Some(printed.as_str()));
+        let is_known = self.rules.iter().any(|rule| line_text(rule) == Some(printed.as_str()));
         (!is_known).then_some(printed)
     }
 }
 
 /// Notes the text of a line that differs only in upper and lower case from what a statement waits for or expects.
 fn note_case(rule: &Rule, progress: &mut Progress, line: &str) {
-    let Some(wanted) = wanted(rule).filter(|wanted| !wanted.is_empty() && progress.near.is_none()) else {
+    let Some(wanted) = line_text(rule).filter(|wanted| !wanted.is_empty() && progress.near.is_none()) else {
         return;
     };
     let mut starts = line.char_indices().map(|(at, _)| at);
@@ -282,7 +286,7 @@ fn note_case(rule: &Rule, progress: &mut Progress, line: &str) {
 }
 
 /// The text of a line that a statement waits for, expects or forbids.
-fn wanted(rule: &Rule) -> Option<&str> {
+fn line_text(rule: &Rule) -> Option<&str> {
     match (rule.trigger.condition(), &rule.action) {
         (Some(Condition::Printed(text)), _) => Some(text.as_str()),
         (_, Action::Expect(expectation)) => expectation.printed(),

@@ -59,7 +59,7 @@ impl Player {
     }
 
     /// Takes the console lines that were sent since the last call.
-    fn hear(&mut self, out: &mut Out) {
+    fn take_lines(&mut self, out: &mut Out) {
         while let Some((at, line)) = out.next_line() {
             self.note_line(&line, at);
         }
@@ -73,7 +73,7 @@ impl Player {
         memory: &mut GuestMemory,
     ) {
         // Earlier output does not count for the new rules.
-        self.hear(access.out);
+        self.take_lines(access.out);
         for rule in stimulus.rules {
             rule.action.announce(access, memory);
             if let Some(Condition::UartSent(_)) = rule.trigger.condition() {
@@ -115,7 +115,7 @@ impl Player {
     ///
     /// Lines that were sent after the last tick have not been compared yet.
     pub(crate) fn is_busy(&self, has_shown_lines: bool) -> bool {
-        let awaits = self.awaits();
+        let awaits = self.is_waiting();
         let is_due = self.plans.all().any(|due| match due {
             DueEvent::Rule(index) => {
                 let rule = &self.rules[index];
@@ -128,7 +128,7 @@ impl Player {
     }
 
     /// Returns whether a statement still waits for the first occurrence of its condition in order to start something.
-    fn awaits(&self) -> bool {
+    fn is_waiting(&self) -> bool {
         self.rules.iter().zip(&self.progress).any(|(rule, progress)| {
             let is_once = matches!(rule.trigger, Trigger::When { is_once: true, .. });
             is_once && !progress.happened && rule.action.keeps_the_run()
@@ -137,7 +137,7 @@ impl Player {
 
     /// Returns the number of ticks without any action after the one that began at `now`.
     pub(crate) fn quiet_ticks(&self, now: Cycles) -> u64 {
-        let is_ending = self.active.is_empty() && !self.is_idle && self.awaits();
+        let is_ending = self.active.is_empty() && !self.is_idle && self.is_waiting();
         if is_ending || !self.lines.is_empty() { 0 } else { self.plans.quiet_ticks(now) }
     }
 
@@ -149,7 +149,7 @@ impl Player {
         changes: &[BitChange],
         sent: &[SentByte],
     ) -> bool {
-        self.hear(access.out);
+        self.take_lines(access.out);
         self.is_idle = changes.is_empty()
             && sent.is_empty()
             && self.lines.is_empty()
@@ -199,7 +199,7 @@ impl Player {
 
     fn watch_bits(&mut self, changes: &[BitChange]) {
         for change in changes {
-            self.happened(change.at, |condition| {
+            self.trigger_rules(change.at, |condition| {
                 matches!(condition, Condition::Bit(bit, edge) if *bit == change.bit && edge.fits(change.level))
             });
         }
@@ -215,7 +215,7 @@ impl Player {
                 self.sent.pop_front();
             }
             let bytes: Vec<u8> = self.sent.iter().copied().collect();
-            self.happened(
+            self.trigger_rules(
                 *at,
                 |condition| matches!(condition, Condition::UartSent(text) if bytes.ends_with(text)),
             );
@@ -225,7 +225,7 @@ impl Player {
     fn watch_lines(&mut self) {
         while let Some((at, line, known)) = self.lines.pop_front() {
             self.note_text(&line, at, known);
-            self.happened(
+            self.trigger_rules(
                 at,
                 |condition| matches!(condition, Condition::Printed(text) if line.contains(text.as_str())),
             );
@@ -245,13 +245,13 @@ impl Player {
             let has_passed =
                 !was_active && !is_active && starts_before[thread.index()] != starts[thread.index()];
             if has_passed || !was_active && is_active {
-                self.happened(
+                self.trigger_rules(
                     context.now,
                     |condition| matches!(condition, Condition::Starts(named) if *named == thread),
                 );
             }
             if has_passed || was_active && !is_active {
-                self.happened(
+                self.trigger_rules(
                     context.now,
                     |condition| matches!(condition, Condition::Ends(named) if *named == thread),
                 );
@@ -260,7 +260,7 @@ impl Player {
     }
 
     /// Something has happened at `at`: plans the rules that waited for it.
-    pub(super) fn happened(&mut self, at: Cycles, fits: impl Fn(&Condition) -> bool) {
+    pub(super) fn trigger_rules(&mut self, at: Cycles, fits: impl Fn(&Condition) -> bool) {
         self.begin_waiting(at, &fits);
         for index in 0..self.rules.len() {
             let Trigger::When { condition, after, is_once } = &self.rules[index].trigger else { continue };
@@ -322,8 +322,8 @@ impl Player {
 
     /// Checks, at the end of the run, the expectations for the end, and those later than the run lasted.
     pub(crate) fn finish(&mut self, access: &mut WorldAccess<'_>, context: &TickContext<'_>) {
-        changes::sweep(&mut access.io.pins.changes, context.memory, access.now);
-        self.hear(access.out);
+        changes::scan_virtual_bits(&mut access.io.pins.changes, context.memory, access.now);
+        self.take_lines(access.out);
         self.watch_bits(&access.io.pins.changes.take());
         self.watch_lines();
         self.watch_threads(context);

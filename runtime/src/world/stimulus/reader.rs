@@ -66,7 +66,7 @@ impl StatementReader<'_> {
         if self.accept(word) { Ok(()) } else { self.expected(&format!("`{word}`")) }
     }
 
-    pub(crate) fn equals(&mut self) -> Result<(), Mistake> {
+    pub(crate) fn expect_equals(&mut self) -> Result<(), Mistake> {
         if self.accept_sign("=") { Ok(()) } else { self.expected("`=`") }
     }
 

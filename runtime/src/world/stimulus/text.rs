@@ -103,7 +103,7 @@ impl StatementReader<'_> {
             }
             "t" => {
                 self.advance();
-                self.equals()?;
+                self.expect_equals()?;
                 self.time().map(Trigger::At).map(Some)
             }
             "when" | "once" => {

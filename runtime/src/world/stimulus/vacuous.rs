@@ -36,7 +36,7 @@ pub(super) fn cause(rules: &[Rule], progress: &[Progress], index: usize, view: &
     if varied(index) {
         return None;
     }
-    match limited(rules.get(index)?, view)? {
+    match limited_quantity(rules.get(index)?, view)? {
         LimitedQuantity::Position(axis)
             if is_used(axis, view) && view.memory.axis(axis, Chan::INPUT_MODE) == 0 =>
         {
@@ -45,7 +45,11 @@ pub(super) fn cause(rules: &[Rule], progress: &[Progress], index: usize, view: &
         }
         LimitedQuantity::Axis(axis) | LimitedQuantity::Position(axis) => {
             let others = || view.memory.axes().iter().filter(|other| *other != axis);
-            let limits_used = |(index, rule)| matches!(limited(rule, view), Some(LimitedQuantity::Axis(other) | LimitedQuantity::Position(other)) if varied(index) || is_used(other, view));
+            let limits_used = |(index, rule)| {
+                use LimitedQuantity::{Axis, Position};
+                let is_limited = |other| varied(index) || is_used(other, view);
+                matches!(limited_quantity(rule, view), Some(Axis(other) | Position(other)) if is_limited(other))
+            };
             let is_odd = !view.machine.has_axis(axis) || !rules.iter().enumerate().any(limits_used);
             let is_idle = !is_used(axis, view) && others().any(|other| is_used(other, view));
             (is_idle && is_odd).then(|| format!("axis {axis} is never used in this run"))
@@ -65,7 +69,7 @@ pub(super) fn cause(rules: &[Rule], progress: &[Progress], index: usize, view: &
 }
 
 /// Returns the part of the board that an expectation of the whole run limits.
-fn limited(rule: &Rule, view: &View<'_>) -> Option<LimitedQuantity> {
+fn limited_quantity(rule: &Rule, view: &View<'_>) -> Option<LimitedQuantity> {
     let (Trigger::Always { .. }, Action::Expect(Expectation { predicate, .. })) =
         (&rule.trigger, &rule.action)
     else {

@@ -48,7 +48,7 @@ impl Guard {
         matches!((self.0, other.0), (Some((a, x)), Some((b, y))) if a == b && x != y)
     }
 
-    fn forget(&mut self, reg: Reg) {
+    fn clear_if(&mut self, reg: Reg) {
         if self.0.is_some_and(|(own, _)| own == reg) {
             self.0 = None;
         }
@@ -305,8 +305,8 @@ impl FlowState {
             self.pending.iter().filter(|pending| pending.left == 0).map(|pending| pending.reg).collect();
         self.pending.retain(|pending| pending.left > 0);
         for reg in landed {
-            self.pending.iter_mut().for_each(|pending| pending.pred.forget(reg));
-            self.ports.iter_mut().for_each(|(.., guard)| guard.forget(reg));
+            self.pending.iter_mut().for_each(|pending| pending.pred.clear_if(reg));
+            self.ports.iter_mut().for_each(|(.., guard)| guard.clear_if(reg));
         }
         self.readings.retain(|reading| reading.last > 0);
         for reading in &mut self.readings {

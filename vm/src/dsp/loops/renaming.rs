@@ -156,7 +156,7 @@ impl Renaming {
     }
 
     /// Brings the values of a state to the places of a loop that begins.
-    pub(super) fn enter(&self, state: &mut State) {
+    pub(super) fn load_state(&self, state: &mut State) {
         for landing in &self.landings {
             let slot = state.slot(u64::from(landing.due));
             state.regs[usize::from(landing.place)] = state.flight.values[slot][usize::from(landing.reg & 63)];
@@ -167,7 +167,7 @@ impl Renaming {
     }
 
     /// Moves the values back: the state is then as if the packets had been executed one by one.
-    pub(super) fn leave(&self, state: &mut State) {
+    pub(super) fn store_state(&self, state: &mut State) {
         let places = state.regs;
         for (reg, place) in self.map.iter().enumerate() {
             state.regs[reg] = places[usize::from(*place)];

@@ -29,7 +29,7 @@ impl Translator<'_, '_> {
         if m.flags & UPDATES == 0 {
             return Ok(sum);
         }
-        self.give(packet_state, m, m.a, sum)?;
+        self.write_result(packet_state, m, m.a, sum)?;
         Ok(if m.flags & AFTER == 0 { sum } else { base })
     }
 

@@ -50,7 +50,7 @@ impl Translator<'_, '_> {
             | Work::Mvk
             | Work::Mvkh => {
                 let value = self.word(packet_state, m, s1, s2)?;
-                self.give(packet_state, m, m.dst, value)
+                self.write_result(packet_state, m, m.dst, value)
             }
             Work::AddLong | Work::SubLong | Work::ShlLong | Work::ShrLong | Work::ShruLong => {
                 let value = self.long(packet_state, m, s1)?;
@@ -58,7 +58,7 @@ impl Translator<'_, '_> {
             }
             Work::CmpeqLong | Work::CmpgtLong | Work::CmpltLong | Work::CmpgtuLong | Work::CmpltuLong => {
                 let value = self.compare_long(packet_state, m);
-                self.give(packet_state, m, m.dst, value)
+                self.write_result(packet_state, m, m.dst, value)
             }
             Work::Product => {
                 let value = self.product(m.extra, s1, s2);
@@ -95,15 +95,15 @@ impl Translator<'_, '_> {
             }
             Work::Abssp => {
                 let value = self.builder.ins().band_imm_u(s2, 0x7FFF_FFFF);
-                self.give(packet_state, m, m.dst, value)
+                self.write_result(packet_state, m, m.dst, value)
             }
             Work::Cmpeqsp | Work::Cmpgtsp | Work::Cmpltsp => {
                 let value = self.compare_singles(m.work, s1, s2);
-                self.give(packet_state, m, m.dst, value)
+                self.write_result(packet_state, m, m.dst, value)
             }
             Work::Rcpsp => {
                 let value = self.reciprocal_single(s2);
-                self.give(packet_state, m, m.dst, value)
+                self.write_result(packet_state, m, m.dst, value)
             }
             Work::Adddp
             | Work::Subdp
@@ -389,8 +389,8 @@ impl Translator<'_, '_> {
     ) -> Result<(), NoNextPacket> {
         let (low, high) = self.split(value);
         let high = self.builder.ins().band_imm_u(high, 0xFF);
-        self.give(packet_state, m, m.dst, low)?;
-        self.give(packet_state, m, m.dst | 1, high)
+        self.write_result(packet_state, m, m.dst, low)?;
+        self.write_result(packet_state, m, m.dst | 1, high)
     }
 
     /// Adds a double whose low word is available in the first stage, the high word in the second.
@@ -401,7 +401,7 @@ impl Translator<'_, '_> {
         value: Value,
     ) -> Result<(), NoNextPacket> {
         let (low, high) = self.split(value);
-        self.give(packet_state, m, m.dst, low)?;
+        self.write_result(packet_state, m, m.dst, low)?;
         self.push(packet_state, 2, m.dst | 1, high)
     }
 

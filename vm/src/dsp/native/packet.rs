@@ -101,7 +101,7 @@ impl Translator<'_, '_> {
     }
 
     /// A result of the first stage.
-    pub(super) fn give(
+    pub(super) fn write_result(
         &mut self,
         packet_state: &mut PacketState,
         micro: &MicroOp,
@@ -154,7 +154,7 @@ impl Translator<'_, '_> {
             packet_state.flights.iter().position(|flight| flight.flying == strip(flight.flying, due, reg));
         let Some(index) = index else {
             let condition = packet_state.condition;
-            packet_state.flights.push(fly(result(due, reg), condition, vec![value]));
+            packet_state.flights.push(effect_values(result(due, reg), condition, vec![value]));
             return Ok(());
         };
         let (other, old) = (packet_state.flights[index].condition, packet_state.flights[index].values[0]);
@@ -167,7 +167,7 @@ impl Translator<'_, '_> {
             (Some(_) | None, None) => (None, old),
             (None, Some(_)) => (None, value),
         };
-        packet_state.flights[index] = fly(result(due, reg), condition, vec![value]);
+        packet_state.flights[index] = effect_values(result(due, reg), condition, vec![value]);
         Ok(())
     }
 
@@ -193,7 +193,7 @@ impl Translator<'_, '_> {
             self.refuse_both(packet_state, other)?;
         }
         let flying = InFlightEffect { due: BRANCH, is_conditional: false, kind: EffectKind::Branch(known) };
-        packet_state.flights.push(fly(flying, packet_state.condition, values));
+        packet_state.flights.push(effect_values(flying, packet_state.condition, values));
         packet_state.branches.push(packet_state.condition);
         Ok(())
     }
@@ -201,7 +201,7 @@ impl Translator<'_, '_> {
     /// A double instruction that reads its high words later.
     pub(super) fn start_double(&mut self, packet_state: &mut PacketState, micro: &MicroOp, low: [Value; 2]) {
         let flying = InFlightEffect { due: 1, is_conditional: false, kind: EffectKind::Start(*micro) };
-        packet_state.flights.push(fly(flying, packet_state.condition, low.to_vec()));
+        packet_state.flights.push(effect_values(flying, packet_state.condition, low.to_vec()));
     }
 
     /// Leaves the packet to the interpreter where the stack pointer leaves its bounds.
@@ -270,7 +270,7 @@ impl Translator<'_, '_> {
                 flights.into_iter().partition(|flight| flight.flying.due == 0);
             for flight in &arrived {
                 if let EffectKind::Result(reg) = flight.flying.kind {
-                    self.land(reg, flight.condition, flight.values[0]);
+                    self.land_result(reg, flight.condition, flight.values[0]);
                 }
             }
             let mut packet_state =
@@ -293,7 +293,7 @@ impl Translator<'_, '_> {
         Ok(true)
     }
 
-    fn land(&mut self, reg: u8, condition: Option<Value>, value: Value) {
+    fn land_result(&mut self, reg: u8, condition: Option<Value>, value: Value) {
         let value = match condition {
             Some(condition) => {
                 let old = self.builder.use_var(self.regs[usize::from(reg & 63)]);
@@ -321,7 +321,7 @@ impl Translator<'_, '_> {
         let own2 = self.read(packet_state, micro.b | 1);
         if micro.work == Work::Mpydp && high2.is_none() {
             let flying = InFlightEffect { due: 1, is_conditional: false, kind: EffectKind::Product(micro) };
-            packet_state.flights.push(fly(flying, flight.condition, vec![low1, low2, own2]));
+            packet_state.flights.push(effect_values(flying, flight.condition, vec![low1, low2, own2]));
             return Ok(());
         }
         self.finish_double(packet_state, &micro, [low1, high1], [low2, high2.unwrap_or(own2)])
@@ -353,7 +353,7 @@ fn strip(flying: InFlightEffect, due: u8, reg: u8) -> InFlightEffect {
 }
 
 /// An effect in flight with its condition.
-fn fly(flying: InFlightEffect, condition: Option<Value>, values: Vec<Value>) -> EffectValues {
+fn effect_values(flying: InFlightEffect, condition: Option<Value>, values: Vec<Value>) -> EffectValues {
     EffectValues {
         flying: InFlightEffect { is_conditional: condition.is_some(), ..flying },
         condition,

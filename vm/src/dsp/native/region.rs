@@ -250,7 +250,7 @@ impl<'a, 'f> Translator<'a, 'f> {
             values.push(self.builder.ins().load(types::I32, self.own, self.pointers.handover, place));
         }
         let node = self.node(pc, entry);
-        let flights = flights(entry, &mut values.into_iter());
+        let flights = effects_with_values(entry, &mut values.into_iter());
         self.jump(node, &flights);
         let mut next = 0;
         while next < self.nodes.len() {
@@ -344,7 +344,7 @@ impl<'a, 'f> Translator<'a, 'f> {
         let count = node.flying.iter().map(|one| one.kind.values()).sum();
         let values: Vec<Value> =
             (0..count).filter_map(|index| words.get(&index).copied().or_else(|| parameters.next())).collect();
-        let mut flights = flights(&node.flying, &mut values.into_iter());
+        let mut flights = effects_with_values(&node.flying, &mut values.into_iter());
         for flight in flights.iter_mut().filter(|flight| flight.flying.is_conditional) {
             flight.condition = conditions.next();
         }
@@ -459,7 +459,10 @@ fn shape(flights: &[EffectValues]) -> Vec<InFlightEffect> {
 }
 
 /// The effects in flight with their values, without conditions.
-fn flights(flying: &[InFlightEffect], values: &mut impl Iterator<Item = Value>) -> Vec<EffectValues> {
+fn effects_with_values(
+    flying: &[InFlightEffect],
+    values: &mut impl Iterator<Item = Value>,
+) -> Vec<EffectValues> {
     let with_values = |flying: &InFlightEffect| EffectValues {
         flying: *flying,
         condition: None,

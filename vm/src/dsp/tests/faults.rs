@@ -92,7 +92,7 @@ fn results_in_flight_land_at_an_interrupt() {
     memory.words(0, [77]);
     assert_eq!(run(&mut core, &mut memory, 1), Halt::Preempted);
     assert_eq!(core.state.reg(Reg::a(5)), 0);
-    core.state.settle();
+    core.state.land_all();
     assert_eq!(core.state.reg(Reg::a(5)), 77);
 }
 

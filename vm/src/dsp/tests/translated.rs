@@ -139,7 +139,7 @@ fn check_borders(words: &[u32], regs: &[(Reg, u32)], steps: &[u64]) -> u64 {
         }
     }
     assert!(ram == others, "memory differs");
-    looping.looped()
+    looping.packets_in_loops()
 }
 
 /// Runs words packet by packet, with loops, and translated, in slices of this length; returns the number of translated
@@ -154,13 +154,13 @@ fn check(words: &[u32], regs: &[(Reg, u32)], slice: i64, slices: usize) -> u64 {
         plain.state.clock.set_left(slice);
         let halt = plain.run(&mut ram);
         let at_once = seen(&plain, &halt);
-        plain.state.settle();
+        plain.state.land_all();
         let landed = seen(&plain, &halt);
         for (other, others) in [&mut looping, &mut translated].into_iter().zip(&mut rams) {
             other.state.clock.set_left(slice);
             let end = other.run(others);
             assert_eq!(at_once, seen(other, &end));
-            other.state.settle();
+            other.state.land_all();
             assert_eq!(landed, seen(other, &end), "landed");
         }
         if halt != Halt::Preempted {
@@ -168,7 +168,7 @@ fn check(words: &[u32], regs: &[(Reg, u32)], slice: i64, slices: usize) -> u64 {
         }
     }
     assert!(rams.iter().all(|others| ram == *others), "memory differs");
-    if cfg!(feature = "native") { translated.translated() } else { looping.looped() }
+    if cfg!(feature = "native") { translated.translated() } else { looping.packets_in_loops() }
 }
 
 const INTEGER: [u32; 11] = [

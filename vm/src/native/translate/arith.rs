@@ -309,7 +309,7 @@ impl Translator<'_, '_> {
         let a = self.slot(class, a);
         let op = self.builder.ins().iconst(types::I64, Request::of_division(op));
         let slot = self.request(Reason::DivisionByZero.code(), self.at, a, op);
-        let answer = self.unslot(class, slot);
+        let answer = self.read_slot(class, slot);
         self.builder.ins().jump(done, &[answer.into()]);
         self.enter(go_on);
         Some(done)

@@ -46,7 +46,7 @@ macro_rules! for_each_class {
 
             pub(super) fn $result(&mut self, dst: $register) {
                 let slot = self.calls.result.unwrap_or_else(|| unreachable!("a result of a verified program"));
-                let value = self.unslot(Class::$class, slot);
+                let value = self.read_slot(Class::$class, slot);
                 self.set(dst, value);
             }
 
@@ -270,7 +270,7 @@ impl Translator<'_, '_> {
         if let Some(attempt) = self.calls.attempt {
             return self.end_attempt(attempt, slot);
         }
-        self.settle();
+        self.settle_budget();
         let at = self.builder.ins().iconst(types::I32, self.at as i64);
         self.store_state(at, offset_of!(State, returned_at));
         let budget = self.builder.use_var(self.registers.budget);

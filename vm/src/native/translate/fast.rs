@@ -69,7 +69,7 @@ impl Translator<'_, '_> {
             self.go_to(entry);
         }
         if self.reachable {
-            self.settle();
+            self.settle_budget();
         }
         let bails = self.unroll.fast.take().map(|fast| fast.bails).unwrap_or_default();
         let behind = self.reachable.then(|| self.builder.create_block());
@@ -137,7 +137,7 @@ impl Translator<'_, '_> {
     }
 
     /// Makes the budget exact at an exit of the fast iterations.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn settle_budget(&mut self) {
         if let Some(fast) = &mut self.unroll.fast {
             let cycles = take(&mut fast.spent);
             self.spend(cycles);

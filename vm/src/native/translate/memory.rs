@@ -202,7 +202,7 @@ impl Translator<'_, '_> {
         if !(PROGRAM_BASE..PROGRAM_LIMIT).contains(&addr.0) {
             if field == offset_of!(State, ram.iram) {
                 self.end_long_slice();
-                self.touch();
+                self.mark_touched();
             }
             let base = self.load_pointer(field);
             return self.store_guest(value, base, place, width);
@@ -265,7 +265,7 @@ impl Translator<'_, '_> {
         self.end_long_slice();
         self.stay_cold();
         if is_store {
-            self.touch();
+            self.mark_touched();
         }
         let base = self.load_state(types::I64, offset_of!(State, ram.iram));
         let place = self.builder.ins().uextend(types::I64, place);
@@ -275,7 +275,7 @@ impl Translator<'_, '_> {
     }
 
     /// Says that on-chip RAM is written.
-    fn touch(&mut self) {
+    fn mark_touched(&mut self) {
         let yes = self.builder.ins().iconst(types::I32, 1);
         self.store_state(yes, offset_of!(State, signs.touched));
     }
@@ -340,7 +340,7 @@ impl Translator<'_, '_> {
         let address = self.builder.ins().uextend(types::I64, address);
         let none = self.builder.ins().iconst(types::I64, 0);
         let slot = self.request(Reason::Load.with_width(width), self.at, address, none);
-        self.unslot(class, slot)
+        self.read_slot(class, slot)
     }
 
     fn request_store(&mut self, class: Class, value: Value, address: Value, width: Width) {

@@ -228,7 +228,7 @@ impl<'a> Planner<'a> {
             for at in self.plan.order.clone() {
                 if at == entry || self.begins.contains(&at) {
                     if let Some(known) = known.take() {
-                        self.arrive((iteration, at), known);
+                        self.merge_at_join((iteration, at), known);
                     }
                     known = self.arriving.remove(&(iteration, at));
                     if let Some(known) = &known {
@@ -269,9 +269,9 @@ impl<'a> Planner<'a> {
         }
         if let Some(to) = meter::branch_target(&op) {
             if op.kind() == OpKind::Branch {
-                self.leave(iteration, at + 1, known.clone());
+                self.record_branch(iteration, at + 1, known.clone());
             }
-            self.leave(iteration, to.0 as usize, known);
+            self.record_branch(iteration, to.0 as usize, known);
             return None;
         }
         if let Some(dst) = int_destination(&op) {
@@ -365,14 +365,14 @@ impl<'a> Planner<'a> {
     }
 
     /// A branch to `to`.
-    fn leave(&mut self, iteration: usize, to: usize, known: SymbolicState) {
+    fn record_branch(&mut self, iteration: usize, to: usize, known: SymbolicState) {
         if let Some(place) = self.plan.target(iteration, to) {
-            self.arrive(place, known);
+            self.merge_at_join(place, known);
         }
     }
 
     /// Merges facts at a join: those that hold on all paths remain.
-    fn arrive(&mut self, place: IterationWord, known: SymbolicState) {
+    fn merge_at_join(&mut self, place: IterationWord, known: SymbolicState) {
         let Some(mut met) = self.arriving.remove(&place) else {
             self.arriving.insert(place, known);
             return;

@@ -36,7 +36,7 @@ impl Selector<'_> {
         let rest = passed.split_off(passed.len().min(abi::ARGUMENTS.len()));
         let mut arguments: Vec<_> = passed.into_iter().zip(abi::ARGUMENTS).collect();
         if !rest.is_empty() {
-            let area = self.rest(&rest, &classes[abi::ARGUMENTS.len()..]);
+            let area = self.store_stack_arguments(&rest, &classes[abi::ARGUMENTS.len()..]);
             arguments.push((area, abi::REST));
         }
         let target = match callee {
@@ -70,14 +70,14 @@ impl Selector<'_> {
     /// The number of the thread, from the firmware, since functions keep other values in its register.
     fn thread(&mut self) -> VReg {
         let symbol = self.externs.symbol("CurrentThread");
-        let base = self.known(Value::Symbol(symbol, 0));
+        let base = self.constant_register(Value::Symbol(symbol, 0));
         let number = self.word();
         self.access(Kind::LoadWord, number.into(), Arg::None, MemoryPlace::new(Base::Reg(base), 0));
         number
     }
 
     /// Stores the arguments that have no register; returns their address.
-    fn rest(&mut self, rest: &[VReg], classes: &[Class]) -> VReg {
+    fn store_stack_arguments(&mut self, rest: &[VReg], classes: &[Class]) -> VReg {
         let first = self.code.spills.next_multiple_of(2);
         self.code.spills = first + 2 * rest.len() as u32;
         for (index, (reg, class)) in (0..).zip(rest.iter().zip(classes)) {
@@ -134,7 +134,7 @@ impl Selector<'_> {
     }
 
     /// The register in which an operand is returned.
-    pub(super) fn returned(&mut self, operand: Operand) -> VReg {
+    pub(super) fn returned_register(&mut self, operand: Operand) -> VReg {
         let reg = self.operand(operand);
         let info = &mut self.code.regs[reg];
         info.hint = info.hint.or(Some(abi::RESULT));

@@ -12,16 +12,16 @@ impl Selector<'_> {
     /// A register that holds a constant.
     pub(super) fn constant(&mut self, constant: Constant) -> VReg {
         match constant {
-            Constant::I32(value) => self.known(Value::Number(value)),
-            Constant::F32(bits) => self.known(Value::Number(bits.cast_signed())),
-            Constant::Symbol(symbol, offset) => self.known(Value::Symbol(symbol, offset)),
+            Constant::I32(value) => self.constant_register(Value::Number(value)),
+            Constant::F32(bits) => self.constant_register(Value::Number(bits.cast_signed())),
+            Constant::Symbol(symbol, offset) => self.constant_register(Value::Symbol(symbol, offset)),
             Constant::I64(value) => self.wide_constant(value.cast_unsigned()),
             Constant::F64(bits) => self.wide_constant(bits),
         }
     }
 
     /// A register that holds a known word, shared by its users.
-    pub(super) fn known(&mut self, value: Value) -> VReg {
+    pub(super) fn constant_register(&mut self, value: Value) -> VReg {
         let early = || self.early.constants.iter().find(|(known, _)| *known == value).map(|(_, reg)| *reg);
         if let Some(reg) = self.constants.get(&value).copied().or_else(early) {
             return reg;
@@ -78,7 +78,7 @@ impl Selector<'_> {
     }
 
     /// An operand of class `I32` as a source, which may be a constant in the range.
-    pub(super) fn small(&mut self, operand: Operand, range: std::ops::RangeInclusive<i32>) -> Arg {
+    pub(super) fn small_constant(&mut self, operand: Operand, range: std::ops::RangeInclusive<i32>) -> Arg {
         match operand.as_int() {
             Some(value) if range.contains(&value) => Arg::number(value),
             _ => self.operand(operand).into(),

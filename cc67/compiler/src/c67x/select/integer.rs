@@ -41,7 +41,7 @@ impl Selector<'_> {
             BinaryOp::Subtract => match b.as_int() {
                 Some(value) => self.add(to, a, Operand::int(value.wrapping_neg())),
                 None => {
-                    let (a, b) = (self.small(a, C5), self.operand(b));
+                    let (a, b) = (self.small_constant(a, C5), self.operand(b));
                     self.push(Kind::Sub, to, a, b);
                 }
             },
@@ -65,7 +65,7 @@ impl Selector<'_> {
     }
 
     fn logic(&mut self, kind: Kind, dst: VReg, a: Operand, b: Operand) {
-        let (b, a) = (self.small(b, C5), self.operand(a));
+        let (b, a) = (self.small_constant(b, C5), self.operand(a));
         self.push(kind, dst, b, a);
     }
 
@@ -73,7 +73,7 @@ impl Selector<'_> {
     pub(super) fn add(&mut self, dst: VReg, a: Operand, b: Operand) {
         let a = self.operand(a);
         let range = if a == dst { i16::MIN.into()..=i16::MAX.into() } else { C5 };
-        let b = self.small(b, range);
+        let b = self.small_constant(b, range);
         self.push(Kind::Add, dst, b, a);
     }
 
@@ -172,7 +172,7 @@ impl Selector<'_> {
         match op {
             CompareOp::Equal | CompareOp::NotEqual => {
                 let (a, b) = if a.as_value().is_none() { (b, a) } else { (a, b) };
-                let (b, a) = (self.small(b, C5), self.operand(a));
+                let (b, a) = (self.small_constant(b, C5), self.operand(a));
                 self.push(Kind::CmpEq, dst, b, a);
                 op == CompareOp::NotEqual
             }
@@ -203,7 +203,7 @@ impl Selector<'_> {
             let a = self.operand(a);
             return self.push(gt, dst, Arg::number(value), a);
         }
-        let (a, b) = (self.small(a, range), self.operand(b));
+        let (a, b) = (self.small_constant(a, range), self.operand(b));
         self.push(lt, dst, a, b);
     }
 }

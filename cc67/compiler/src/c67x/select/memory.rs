@@ -68,8 +68,8 @@ impl Selector<'_> {
         let step = bytes.cast_signed();
         let (base, offset) = match address.base {
             inst::Base::Slot(slot) => return MemoryPlace::new(Base::Slot(slot), address.offset),
-            inst::Base::Absolute => (self.known(Value::Number(address.offset)), 0),
-            inst::Base::Symbol(symbol) => (self.known(Value::Symbol(symbol, address.offset)), 0),
+            inst::Base::Absolute => (self.constant_register(Value::Number(address.offset)), 0),
+            inst::Base::Symbol(symbol) => (self.constant_register(Value::Symbol(symbol, address.offset)), 0),
             inst::Base::Value(value) => (self.value(value), address.offset),
         };
         let fits = offset % step == 0 && (-31..=31).contains(&(offset / step));
@@ -82,7 +82,7 @@ impl Selector<'_> {
     }
 
     /// An address of a word or pair at an offset, a multiple of 8, from the address in a register.
-    pub(super) fn beyond(&mut self, base: VReg, offset: i32) -> MemoryPlace {
+    pub(super) fn offset_address(&mut self, base: VReg, offset: i32) -> MemoryPlace {
         if offset / 4 <= 31 {
             return MemoryPlace::new(Base::Reg(base), offset);
         }
@@ -107,15 +107,15 @@ impl Selector<'_> {
         if (-16..=15).contains(&offset) {
             return self.push(Kind::Add, dst, Arg::number(offset), base);
         }
-        let offset = self.known(Value::Number(offset));
+        let offset = self.constant_register(Value::Number(offset));
         self.push(Kind::Add, dst, offset, base);
     }
 
     /// `dst = address`
     pub(super) fn address(&mut self, address: Address) -> VReg {
         match address.base {
-            inst::Base::Absolute => self.known(Value::Number(address.offset)),
-            inst::Base::Symbol(symbol) => self.known(Value::Symbol(symbol, address.offset)),
+            inst::Base::Absolute => self.constant_register(Value::Number(address.offset)),
+            inst::Base::Symbol(symbol) => self.constant_register(Value::Symbol(symbol, address.offset)),
             inst::Base::Value(value) if address.offset == 0 => self.value(value),
             inst::Base::Value(value) => {
                 let (dst, base) = (self.word(), self.value(value));
@@ -160,13 +160,13 @@ impl Selector<'_> {
             return;
         }
         let (to, from) = (self.address(to), self.address(from));
-        let len = self.known(Value::Number(len.cast_signed()));
+        let len = self.constant_register(Value::Number(len.cast_signed()));
         let result = self.word();
         self.helper(Function::memcpy.name(), &[to, from, len], result);
     }
 
     pub(super) fn clear_memory(&mut self, to: Address, len: u32) {
-        let zero = self.known(Value::Number(0));
+        let zero = self.constant_register(Value::Number(0));
         if len <= INLINE && len.is_multiple_of(4) && self.is_aligned(to) {
             for offset in (0..len.cast_signed()).step_by(4) {
                 let place = self.place(to.plus(offset), 4);
@@ -175,7 +175,7 @@ impl Selector<'_> {
             return;
         }
         let to = self.address(to);
-        let len = self.known(Value::Number(len.cast_signed()));
+        let len = self.constant_register(Value::Number(len.cast_signed()));
         let result = self.word();
         self.helper(Function::memset.name(), &[to, zero, len], result);
     }

@@ -153,12 +153,12 @@ impl Selector<'_> {
                 span: block.origin.span,
             });
         }
-        self.enter();
+        self.insert_entry_code();
     }
 
     /// Inserts the early instructions before the first block; if that block is a jump target, another block is put
     /// before it.
-    fn enter(&mut self) {
+    fn insert_entry_code(&mut self) {
         let early = std::mem::take(&mut self.early.insts);
         let is_target = self.code.blocks.iter().any(|block| block.terminator.targets().any(|to| to == 0));
         if !is_target {
@@ -199,7 +199,7 @@ impl Selector<'_> {
             self.code.params.push((rest, abi::REST));
             for (index, param) in (0..).zip(&params[abi::ARGUMENTS.len()..]) {
                 let reg = self.value(*param);
-                let place = self.beyond(rest, index * 8);
+                let place = self.offset_address(rest, index * 8);
                 self.load_value(reg, self.function.values[*param], place);
             }
             let loads = std::mem::take(&mut self.out);

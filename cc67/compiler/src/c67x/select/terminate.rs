@@ -40,20 +40,22 @@ impl Selector<'_> {
                 if then == otherwise {
                     return Terminator::Jump(then);
                 }
-                let (condition, negated) = self.tested(condition, fused);
+                let (condition, negated) = self.condition_register(condition, fused);
                 Terminator::Branch { condition, negated, then, otherwise }
             }
             inst::Terminator::Table { index, ref targets, default } => {
                 let targets = targets.iter().map(|to| self.numbers[*to]).collect();
                 self.table(index, targets, self.numbers[default])
             }
-            inst::Terminator::Return(value) => Terminator::Return(value.map(|value| self.returned(value))),
+            inst::Terminator::Return(value) => {
+                Terminator::Return(value.map(|value| self.returned_register(value)))
+            }
             inst::Terminator::Unreachable => Terminator::Unreachable,
         }
     }
 
     /// A register to test, and whether 0 means yes.
-    fn tested(&mut self, condition: Operand, fused: Option<Compare>) -> (VReg, bool) {
+    fn condition_register(&mut self, condition: Operand, fused: Option<Compare>) -> (VReg, bool) {
         let Some(Compare { op, a, b }) = fused else {
             return (self.in_condition(condition), false);
         };
@@ -93,7 +95,7 @@ impl Selector<'_> {
         self.push(Kind::Add, place, Arg::number(1), index);
         self.push(Kind::And, place, Arg::number(0), place);
         self.only_if(Some((is_inside, true)));
-        let base = self.known(Value::Table(table));
+        let base = self.constant_register(Value::Table(table));
         let address = self.word();
         let at = MemoryPlace { base: Base::Reg(base), offset: 0, index: Some(place), step: 0 };
         self.access(Kind::LoadWord, address.into(), Arg::None, at);

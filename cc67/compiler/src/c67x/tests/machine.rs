@@ -121,7 +121,7 @@ impl Call {
         while self.core.state.pc() != THREAD_DONE {
             assert_eq!(self.core.step(&mut self.ram), Ok(()));
             if self.core.state.is_interruptible() {
-                self.core.state.settle();
+                self.core.state.land_all();
             }
         }
     }

@@ -56,7 +56,7 @@ pub(super) struct Body {
 
 impl Body {
     /// Reads the text after the word `function`.
-    pub(super) fn begin(line: &mut Cursor<'_>, at: usize, unit: &mut Functions) -> LineResult<Self> {
+    pub(super) fn read_head(line: &mut Cursor<'_>, at: usize, unit: &mut Functions) -> LineResult<Self> {
         let name = line.word()?;
         let symbol = unit.symbols.intern(name.strip_prefix('@').unwrap_or(name));
         let mut body = Self {
@@ -72,17 +72,17 @@ impl Body {
             at,
         };
         line.expect("(")?;
-        while !line.take(")") {
+        while !line.eat(")") {
             if !body.function.params.is_empty() {
                 line.expect(",")?;
             }
             let value = line.entity("v")?;
             line.expect(":")?;
-            body.mention(value);
-            body.say(value, line.class()?)?;
+            body.record_mention(value);
+            body.record_class(value, line.class()?)?;
             body.function.params.push(value);
         }
-        if line.take("->") {
+        if line.eat("->") {
             body.result = Some(line.class()?);
         }
         Ok(body)
@@ -93,11 +93,11 @@ impl Body {
         self.at = at;
         let mut ahead = *line;
         let word = ahead.word()?;
-        if ahead.take(":") {
+        if ahead.eat(":") {
             *line = ahead;
             return self.declaration(word, line);
         }
-        let content = inst::content(line, self, symbols)?;
+        let content = inst::read_line(line, self, symbols)?;
         let id = self.open.ok_or("this is not in a block")?;
         let block = self.blocks.entry(id).or_default();
         block.numbers.push(at);
@@ -142,22 +142,22 @@ impl Body {
         }
         match number::<ValueId>(word, "v")? {
             Some(value) => {
-                self.mention(value);
-                self.say(value, line.class()?)
+                self.record_mention(value);
+                self.record_class(value, line.class()?)
             }
             None => Err(format!("`{word}` is not a block, slot or value")),
         }
     }
 
     /// Records the class of a value.
-    pub(super) fn say(&mut self, value: ValueId, class: Class) -> LineResult<()> {
+    pub(super) fn record_class(&mut self, value: ValueId, class: Class) -> LineResult<()> {
         self.classes
-            .say(value, class)
+            .record(value, class)
             .map_err(|before| format!("{value} is {before} elsewhere, {class} here"))
     }
 
     /// Notes that this line names a value.
-    pub(super) fn mention(&mut self, value: ValueId) {
+    pub(super) fn record_mention(&mut self, value: ValueId) {
         self.values.entry(value).or_insert(self.at);
     }
 
@@ -209,7 +209,7 @@ impl Body {
 
     /// Gives every value its class; values that do not occur are ignored.
     fn fill_values(&mut self) -> Result<(), ParseError> {
-        self.classes.settle();
+        self.classes.propagate();
         let count = self.values.keys().next_back().map_or(0, |last| last.index() + 1);
         let mut values = PrimaryMap::with_capacity(count);
         for value in (0..count).map(ValueId::new) {

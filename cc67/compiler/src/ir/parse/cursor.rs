@@ -22,7 +22,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Takes `text` if it comes next; reports whether it did.
-    pub(super) fn take(&mut self, text: &str) -> bool {
+    pub(super) fn eat(&mut self, text: &str) -> bool {
         match self.rest.trim_start().strip_prefix(text) {
             Some(rest) => {
                 self.rest = rest;
@@ -44,7 +44,7 @@ impl<'a> Cursor<'a> {
 
     /// Reads `text`.
     pub(super) fn expect(&mut self, text: &str) -> Result<(), String> {
-        if self.take(text) { Ok(()) } else { Err(self.unexpected(&format!("`{text}`"))) }
+        if self.eat(text) { Ok(()) } else { Err(self.unexpected_text(&format!("`{text}`"))) }
     }
 
     /// Reads a word.
@@ -53,7 +53,7 @@ impl<'a> Cursor<'a> {
         let ends = |c: char| c.is_whitespace() || ",()[]=:".contains(c);
         let (word, rest) = rest.split_at(rest.find(ends).unwrap_or(rest.len()));
         if word.is_empty() {
-            return Err(self.unexpected("a word"));
+            return Err(self.unexpected_text("a word"));
         }
         self.rest = rest;
         Ok(word)
@@ -79,9 +79,9 @@ impl<'a> Cursor<'a> {
 
     /// Takes ` + 4` or ` - 4` if it comes next; returns 0 if not.
     pub(super) fn offset(&mut self) -> Result<i32, String> {
-        let is_negative = if self.take("+ ") {
+        let is_negative = if self.eat("+ ") {
             false
-        } else if self.take("- ") {
+        } else if self.eat("- ") {
             true
         } else {
             return Ok(0);
@@ -92,11 +92,11 @@ impl<'a> Cursor<'a> {
     }
 
     /// Fails unless the line has been read to its end.
-    pub(super) fn end(self) -> Result<(), String> {
-        if self.rest.trim().is_empty() { Ok(()) } else { Err(self.unexpected("the end of the line")) }
+    pub(super) fn expect_end(self) -> Result<(), String> {
+        if self.rest.trim().is_empty() { Ok(()) } else { Err(self.unexpected_text("the end of the line")) }
     }
 
-    fn unexpected(self, expected: &str) -> String {
+    fn unexpected_text(self, expected: &str) -> String {
         match self.rest.trim() {
             "" => format!("{expected} is expected at the end"),
             rest => format!("{expected} is expected before `{rest}`"),

@@ -18,15 +18,19 @@ pub(super) enum Content {
 }
 
 /// Reads a line of a block.
-pub(super) fn content(line: &mut Cursor<'_>, body: &mut Body, symbols: &mut Symbols) -> LineResult<Content> {
+pub(super) fn read_line(
+    line: &mut Cursor<'_>,
+    body: &mut Body,
+    symbols: &mut Symbols,
+) -> LineResult<Content> {
     let mut reader = InstReader { line, body, symbols };
     let mut ahead = *reader.line;
     let first = ahead.word()?;
     if let Some(dst) = number(first, "v")?
-        && ahead.take("=")
+        && ahead.eat("=")
     {
         *reader.line = ahead;
-        reader.body.mention(dst);
+        reader.body.record_mention(dst);
         return reader.assignment(dst);
     }
     *reader.line = ahead;
@@ -47,34 +51,34 @@ impl InstReader<'_, '_> {
         let (name, suffix) = word.split_once('.').unwrap_or((word, ""));
         let start = std::mem::replace(self.line, ahead);
         let kind = if let Some(op) = UnaryOp::from_name(name) {
-            self.body.say(dst, class(suffix)?)?;
+            self.body.record_class(dst, class(suffix)?)?;
             InstKind::Unary { op, dst, src: self.operand()? }
         } else if let Some(op) = BinaryOp::from_name(name) {
-            self.body.say(dst, class(suffix)?)?;
+            self.body.record_class(dst, class(suffix)?)?;
             let (a, b) = self.pair()?;
             InstKind::Binary { op, dst, a, b }
         } else if let Some(op) = CompareOp::from_name(name) {
             let operands = class(suffix)?;
-            self.body.say(dst, Class::I32)?;
+            self.body.record_class(dst, Class::I32)?;
             let (a, b) = self.pair()?;
             self.body.check_class(a, operands);
             InstKind::Compare { op, dst, a, b }
         } else if let Some(op) = ConvertOp::from_name(word) {
-            self.body.say(dst, op.to())?;
+            self.body.record_class(dst, op.to())?;
             InstKind::Convert { op, dst, src: self.operand()? }
         } else if name == "load" {
             let width = width(suffix)?;
-            self.body.say(dst, width.class())?;
+            self.body.record_class(dst, width.class())?;
             InstKind::Load { dst, width, address: self.address()? }
         } else if word == "address" {
-            self.body.say(dst, Class::I32)?;
+            self.body.record_class(dst, Class::I32)?;
             let Address { base: Base::Slot(slot), offset } = self.address()? else {
                 return Err("`address` takes a slot".to_owned());
             };
             InstKind::FrameAddress { dst, slot, offset }
         } else if name == "call" {
             let result = class(suffix)?;
-            self.body.say(dst, result)?;
+            self.body.record_class(dst, result)?;
             return Ok(Content::Call(self.call(Some(dst))?, Some(result)));
         } else {
             *self.line = start;
@@ -87,7 +91,7 @@ impl InstReader<'_, '_> {
         let src = self.operand()?;
         match src {
             Operand::Value(src) => self.body.classes.copy(dst, src),
-            Operand::Constant(constant) => self.body.say(dst, constant.class())?,
+            Operand::Constant(constant) => self.body.record_class(dst, constant.class())?,
         }
         Ok(InstKind::Copy { dst, src })
     }
@@ -122,7 +126,7 @@ impl InstReader<'_, '_> {
             "jump" => Content::Terminator(Terminator::Jump(self.block()?)),
             "branch" => Content::Terminator(self.branch()?),
             "table" => Content::Terminator(self.table()?),
-            "return" if self.line.end().is_ok() => Content::Terminator(Terminator::Return(None)),
+            "return" if self.line.expect_end().is_ok() => Content::Terminator(Terminator::Return(None)),
             "return" => Content::Terminator(Terminator::Return(Some(self.operand()?))),
             "unreachable" => Content::Terminator(Terminator::Unreachable),
             _ => return Err(format!("there is no instruction `{word}`")),
@@ -142,7 +146,7 @@ impl InstReader<'_, '_> {
         self.line.expect(",")?;
         self.line.expect("[")?;
         let mut targets = Vec::new();
-        while !self.line.take("]") {
+        while !self.line.eat("]") {
             if !targets.is_empty() {
                 self.line.expect(",")?;
             }
@@ -160,7 +164,7 @@ impl InstReader<'_, '_> {
 
     /// A call; the signature is put in later.
     fn call(&mut self, dst: Option<ValueId>) -> LineResult<InstKind> {
-        let callee = if self.line.take("[") {
+        let callee = if self.line.eat("[") {
             let target = self.operand()?;
             self.line.expect("]")?;
             Callee::Pointer(target)
@@ -170,7 +174,7 @@ impl InstReader<'_, '_> {
         };
         self.line.expect("(")?;
         let mut arguments = Vec::new();
-        while !self.line.take(")") {
+        while !self.line.eat(")") {
             if !arguments.is_empty() {
                 self.line.expect(",")?;
             }
@@ -194,7 +198,7 @@ impl InstReader<'_, '_> {
     fn operand(&mut self) -> LineResult<Operand> {
         let word = self.line.word()?;
         if let Some(value) = number(word, "v")? {
-            self.body.mention(value);
+            self.body.record_mention(value);
             return Ok(Operand::Value(value));
         }
         if let Some(name) = word.strip_prefix('&') {
@@ -229,7 +233,7 @@ impl InstReader<'_, '_> {
             self.line.expect("]")?;
             return Ok(Address { base: Base::Absolute, offset: address.cast_signed() });
         } else if let Some(value) = number(word, "v")? {
-            self.body.mention(value);
+            self.body.record_mention(value);
             Base::Value(value)
         } else if let Some(slot) = number(word, "slot")? {
             Base::Slot(slot)

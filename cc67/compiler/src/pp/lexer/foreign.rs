@@ -29,7 +29,7 @@ impl Lexer {
     /// Skips a space that is none in C.
     pub(super) fn skip_foreign_space(&mut self, cx: &mut LexerContext<'_>) -> bool {
         let (character, length) = self.character();
-        if !matches!(meaning(character), CharacterMeaning::Space) {
+        if !matches!(character_meaning(character), CharacterMeaning::Space) {
             return false;
         }
         if !self.complained.space {
@@ -44,7 +44,7 @@ impl Lexer {
 
     /// Reports whether the next bytes are a character that can be mistaken for a letter.
     pub(super) fn is_foreign_letter(&self) -> bool {
-        matches!(meaning(self.character().0), CharacterMeaning::Letter)
+        matches!(character_meaning(self.character().0), CharacterMeaning::Letter)
     }
 
     /// Reads a name that continues with other letters.
@@ -54,7 +54,9 @@ impl Lexer {
             let (character, length) = self.character();
             if character.is_ascii() && is_name_byte(self.byte(self.at)) {
                 self.at += 1;
-            } else if !character.is_ascii() && matches!(meaning(character), CharacterMeaning::Letter) {
+            } else if !character.is_ascii()
+                && matches!(character_meaning(character), CharacterMeaning::Letter)
+            {
                 first = first.or(Some((self.at, self.at + length, character)));
                 self.at += length;
             } else {
@@ -74,7 +76,7 @@ impl Lexer {
     }
 
     /// Reads a token from a byte that cannot begin a C token; `None` if nothing remains of it.
-    pub(super) fn foreign(&mut self, flags: Flags, cx: &mut LexerContext<'_>) -> Option<Token> {
+    pub(super) fn foreign_token(&mut self, flags: Flags, cx: &mut LexerContext<'_>) -> Option<Token> {
         let lo = self.at;
         let (character, length) = self.character();
         if character.is_ascii_control() {
@@ -85,7 +87,7 @@ impl Lexer {
             self.at += 1;
             return Some(Token::new(TokenKind::Stray, flags, self.span_from(lo)));
         }
-        match meaning(character) {
+        match character_meaning(character) {
             CharacterMeaning::Quote(quote) => Some(self.curly(quote, character, length, flags, cx)),
             CharacterMeaning::Punctuator(kind, text) => {
                 self.at += length;
@@ -136,7 +138,8 @@ impl Lexer {
         let behind = self.at;
         while self.at < line_end && closing.is_none() {
             let (next, length) = self.character();
-            let is_partner = matches!(meaning(next), CharacterMeaning::Quote(other) if other == quote);
+            let is_partner =
+                matches!(character_meaning(next), CharacterMeaning::Quote(other) if other == quote);
             self.at += length;
             closing = (is_partner || next == char::from(quote)).then_some(self.at);
         }
@@ -180,7 +183,7 @@ fn from_windows(byte: u8) -> char {
     }
 }
 
-fn meaning(character: char) -> CharacterMeaning {
+fn character_meaning(character: char) -> CharacterMeaning {
     match character {
         '\u{A0}' | '\u{2000}'..='\u{200B}' | '\u{202F}' | '\u{205F}' | '\u{3000}' | '\u{FEFF}' => {
             CharacterMeaning::Space
@@ -205,7 +208,7 @@ fn name_of(character: char) -> String {
         '\u{A0}' => "no-break space",
         '\u{FEFF}' => "byte order mark",
         '\u{200B}' => "zero-width space",
-        _ if matches!(meaning(character), CharacterMeaning::Space) => "typographic space",
+        _ if matches!(character_meaning(character), CharacterMeaning::Space) => "typographic space",
         _ => return format!("character `{character}` (U+{:04X})", u32::from(character)),
     };
     format!("{name} (U+{:04X})", u32::from(character))

@@ -7,7 +7,7 @@ impl Lexer {
     /// Reads the punctuator that starts with `byte`, the next one.
     pub(super) fn punctuator(&mut self, byte: u8) -> Option<TokenKind> {
         for (text, kind) in TokenKind::punctuators_from(byte) {
-            if let Some(end) = self.past(text) {
+            if let Some(end) = self.punctuator_end(text) {
                 self.at = end;
                 return Some(*kind);
             }
@@ -16,7 +16,7 @@ impl Lexer {
     }
 
     /// The end of a punctuator that begins with the next byte, if the rest of it follows.
-    fn past(&self, text: &[u8]) -> Option<usize> {
+    fn punctuator_end(&self, text: &[u8]) -> Option<usize> {
         let mut end = self.at + 1;
         for byte in text.iter().skip(1) {
             let next = self.past_splices(end);

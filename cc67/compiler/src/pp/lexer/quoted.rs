@@ -8,7 +8,7 @@ use super::{Lexer, LexerContext};
 
 impl Lexer {
     /// Reads a string or character constant that starts at `lo`; its quote is the next byte.
-    pub(super) fn quoted(&mut self, lo: usize, flags: Flags, cx: &mut LexerContext<'_>) -> Token {
+    pub(super) fn quoted_token(&mut self, lo: usize, flags: Flags, cx: &mut LexerContext<'_>) -> Token {
         let quote = self.at;
         let delimiter = self.byte(quote);
         let kind = if delimiter == b'"' { TokenKind::String } else { TokenKind::Character };

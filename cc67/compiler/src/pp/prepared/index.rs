@@ -167,7 +167,7 @@ impl Index {
         };
         index.predefined();
         index.header(BOARD);
-        index.spread();
+        index.propagate_names();
         index
     }
 
@@ -177,7 +177,7 @@ impl Index {
         let mut at = 0;
         while at < text.len() {
             let name = past_word(text, at, b"#define ");
-            let word = self.enter(PREDEFINED, name);
+            let word = self.intern(PREDEFINED, name);
             self.words[word].definition = TextPosition::new(PREDEFINED, name);
             at = line_end(text, name) + 1;
         }
@@ -199,14 +199,14 @@ impl Index {
         let end = line_end(text, at);
         if is_at(text, at, b"#define ") {
             let name = past_word(text, at, b"#define ");
-            let word = self.enter(number, name);
+            let word = self.intern(number, name);
             assert!(self.words[word].definition.is_nowhere(), "a macro of the headers is defined twice");
             self.words[word].definition = TextPosition::new(number, name);
             self.words[word].is_of_headers = true;
         } else if is_at(text, at, b"#ifndef ") {
             // As long as no macro of the program has a name of the headers, the lines count.
             let name = past_word(text, at, b"#ifndef ");
-            let word = self.enter(number, name);
+            let word = self.intern(number, name);
             assert!(self.words[word].definition.is_nowhere(), "a header leaves out lines of its own");
             self.words[word].is_of_headers = true;
             if self.heads[number].guard.1 == 0 {
@@ -241,7 +241,7 @@ impl Index {
                 b'0'..=b'9' => at = name_end(text, at) - 1,
                 byte if is_name_byte(byte) => {
                     let end = name_end(text, at);
-                    let word = self.enter(number, at);
+                    let word = self.intern(number, at);
                     self.words[word].is_in_declaration = true;
                     let next = text[past_space(text, end)];
                     assert!(
@@ -264,7 +264,7 @@ impl Index {
     }
 
     /// Adds the names in macros to the declarations that use them.
-    const fn spread(&mut self) {
+    const fn propagate_names(&mut self) {
         let mut is_new = true;
         while is_new {
             is_new = false;
@@ -288,7 +288,7 @@ impl Index {
                 continue;
             }
             if !text[at].is_ascii_digit() {
-                let word = self.enter(definition.text(), at);
+                let word = self.intern(definition.text(), at);
                 is_new |= !self.words[word].is_in_declaration;
                 self.words[word].is_in_declaration = true;
             }
@@ -298,7 +298,7 @@ impl Index {
     }
 
     /// The number of the word at an offset, new if there is none.
-    const fn enter(&mut self, number: usize, at: usize) -> usize {
+    const fn intern(&mut self, number: usize, at: usize) -> usize {
         let text = TEXTS[number];
         let end = name_end(text, at);
         let (_, spelling) = text.split_at(at);

@@ -40,7 +40,7 @@ const USED_BY_THREAD_DONE: &str = "CurrentThread";
 impl Preprocessor<'_> {
     /// The current definition of a name; the prepared texts are searched on its first use.
     pub(super) fn find_macro(&mut self, name: Name) -> Option<MacroId> {
-        match self.macros.standing(name) {
+        match self.macros.state(name) {
             MacroState::Defined(id) => (!self.prepared.in_declaration || self.is_prepared(id)).then_some(id),
             MacroState::Free | MacroState::Undefined => None,
             MacroState::Unknown => self.find_prepared(name),
@@ -53,14 +53,14 @@ impl Preprocessor<'_> {
         let text = [predefined, more.as_bytes()].concat();
         let (start, end) = (predefined.len(), text.len());
         let file = self.sources.add_file(index::name(PREDEFINED), None, text, None);
-        self.begin(PREDEFINED, file);
+        self.record_file(PREDEFINED, file);
         if start < end && self.open_range(PREDEFINED, start, end) {
             self.expand_all(&mut Vec::new());
             self.open.clear();
         }
     }
 
-    fn begin(&mut self, text: usize, file: FileId) {
+    fn record_file(&mut self, text: usize, file: FileId) {
         if let Some(slot) = self.prepared.files.get_mut(text) {
             *slot = Some(file);
         }
@@ -102,7 +102,7 @@ impl Preprocessor<'_> {
             let included_at = if number == BOARD { at } else { self.prepared_span(including, lo, hi) };
             let text = Arc::new(text.to_vec());
             let file = self.sources.add_file(index::name(number), None, Arc::clone(&text), Some(included_at));
-            self.begin(number, file);
+            self.record_file(number, file);
             let (lo, hi) = head.guard;
             let guard = self.names.intern(&String::from_utf8_lossy(text.get(lo..hi).unwrap_or(&[])));
             self.reader.set_guard(super::include::embedded_path(index::name(number)), guard);
@@ -181,7 +181,7 @@ impl Preprocessor<'_> {
         if let Some(builtin) = builtin {
             self.macros.set_builtin(name, builtin);
         }
-        self.macros.defined(name)
+        self.macros.definition(name)
     }
 
     /// Reads the definition whose name is at a position, if its text was begun.
@@ -200,7 +200,7 @@ impl Preprocessor<'_> {
     fn open_range(&mut self, text: usize, lo: usize, hi: usize) -> bool {
         let Some(file) = self.prepared.files.get(text).copied().flatten() else { return false };
         let source = self.sources.file(file);
-        let lexer = Lexer::new(Arc::clone(&source.text), source.start).within(lo, hi);
+        let lexer = Lexer::new(Arc::clone(&source.text), source.start).restrict(lo, hi);
         self.open.push(OpenFile::new(lexer, None, PathBuf::new()));
         true
     }

@@ -64,7 +64,7 @@ impl BootedTarget {
             surroundings.begin(&machine, stimulus, board.memory_mut());
             surroundings.connect_uart(&uart_input, hears_uart);
             if is_assisted {
-                surroundings.assist();
+                surroundings.play_operator();
             }
             Some(DelayedSurroundings { surroundings, origin })
         } else if stimulus.is_empty() && machine == MachineFile::default() && !is_assisted {
@@ -79,8 +79,8 @@ impl BootedTarget {
             threads: std::array::from_fn(|_| ThreadState::Empty),
             turn: SliceOwner::Primary,
             early,
-            rest: Silence { ticks: 0, looks: board.looks() },
-            answer: Silence { ticks: 0, looks: board.looks() },
+            rest: Silence { ticks: 0, looks: board.poll_count() },
+            answer: Silence { ticks: 0, looks: board.poll_count() },
             answer_until: 0,
             commands: [0; 8],
             is_deaf: false,

@@ -170,7 +170,7 @@ impl BootedTarget {
 
     /// Notes the position of the processor; returns the context whose program it executes there.
     fn arrive(&mut self) -> Option<ContextId> {
-        let reached = self.board.reached();
+        let reached = self.board.stop_position();
         let begins = self.begins(reached.pc);
         self.state.debugging.calls.arrive(&reached, begins);
         calls::context(&reached).filter(|_| is_of_program(reached.pc))

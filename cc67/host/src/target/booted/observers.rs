@@ -106,7 +106,7 @@ impl Observers {
             let boot::ProgramCall { argument, thread, at, .. } = call;
             let call = ProgramCall { function, argument, thread, at: CodeAddr::new(at) };
             let now = attached.since(now);
-            attached.surroundings.called(call, memory, now);
+            attached.surroundings.note_call(call, memory, now);
         }
     }
 }

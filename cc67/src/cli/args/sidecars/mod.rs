@@ -79,7 +79,7 @@ impl Sidecars {
         let Some(program) = programs.first() else { return Ok(sidecars) };
         let program = file_of(program);
         let folder = program.parent().unwrap_or(Path::new(""));
-        if let Some(project) = Project::above(folder)? {
+        if let Some(project) = Project::find_above(folder)? {
             sidecars.take_project(command, &project);
         }
         let is_source = program.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("c"));
@@ -87,7 +87,7 @@ impl Sidecars {
         let (options, also) = match head {
             // What `run` does not know is a mistake; other commands have fewer options.
             Head::Run { options, also } if command == "run" => (options, also),
-            Head::Run { options, also } => (known(options, knows), also),
+            Head::Run { options, also } => (known_options(options, knows), also),
             Head::Part | Head::None => (Vec::new(), Vec::new()),
         };
         for (suffix, option) in SIDECARS {
@@ -118,7 +118,7 @@ impl Sidecars {
     /// The project file has a mistake.
     pub(crate) fn of_sources(first: Option<&OsStr>, knows: impl Fn(&str) -> bool) -> Result<Self> {
         let file = first.map(file_of).unwrap_or_default();
-        let project = Project::above(file.parent().unwrap_or(Path::new("")))?;
+        let project = Project::find_above(file.parent().unwrap_or(Path::new("")))?;
         Ok(project.map(|project| project.common_options(knows)).unwrap_or_default().into())
     }
 
@@ -144,7 +144,7 @@ impl Sidecars {
         let shown = shown.chain(also.iter().flat_map(|program| ["also".to_owned(), words::quoted(program)]));
         self.said.push(format!("its first line: {}", shown.collect::<Vec<_>>().join(" ")));
         self.options.extend(relative_to(folder, options));
-        self.also.extend(also.into_iter().map(|program| within(folder, &program)));
+        self.also.extend(also.into_iter().map(|program| resolve_file(folder, &program)));
     }
 
     /// The line that says what is used; `None` if it is nothing.
@@ -162,7 +162,7 @@ impl From<Vec<OsString>> for Sidecars {
 }
 
 /// The options that a command knows, with their values.
-fn known(options: Vec<String>, knows: impl Fn(&str) -> bool) -> Vec<String> {
+fn known_options(options: Vec<String>, knows: impl Fn(&str) -> bool) -> Vec<String> {
     let mut is_known = true;
     let take = |option: &String| {
         if option.starts_with('-') && option.parse::<f64>().is_err() {
@@ -225,11 +225,11 @@ fn relative_to(folder: &Path, options: Vec<String>) -> Vec<OsString> {
 /// A stimulus may be a text, which has spaces or signs in it.
 fn file_or_text(folder: &Path, value: &str) -> OsString {
     let is_text = value.contains([' ', '=']) && !folder.join(value).exists();
-    if is_text { value.into() } else { within(folder, value) }
+    if is_text { value.into() } else { resolve_file(folder, value) }
 }
 
 /// `[N:]FILE` with a file relative to a folder.
-pub(crate) fn within(folder: &Path, program: &str) -> OsString {
+pub(crate) fn resolve_file(folder: &Path, program: &str) -> OsString {
     let file = file_of(OsStr::new(program));
     let number = program.strip_suffix(&*file.to_string_lossy()).unwrap_or_default();
     let mut joined = OsString::from(number);

@@ -21,7 +21,7 @@ use anyhow::{Result, anyhow, bail};
 use compiler::words::suggest;
 use toml::de::{DeTable, DeValue};
 
-use super::{file_or_text, within};
+use super::{file_or_text, resolve_file};
 use crate::cli::io::input::read;
 
 /// The name of the file.
@@ -60,7 +60,7 @@ impl Project {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub(crate) fn above(folder: &Path) -> Result<Option<Self>> {
+    pub(crate) fn find_above(folder: &Path) -> Result<Option<Self>> {
         let folder = if folder == Path::new("") { Path::new(".") } else { folder };
         let Ok(absolute) = folder.canonicalize() else { return Ok(None) };
         for above in absolute.ancestors() {
@@ -98,11 +98,12 @@ impl Project {
             let name = key.get_ref().as_ref();
             let at = value.span().start;
             if name == PROGRAMS {
-                let values = values(value.get_ref(), &|text| within(folder, text));
+                let values = values(value.get_ref(), &|text| resolve_file(folder, text));
                 project.programs =
                     values.ok_or_else(|| wrong(at, format!("`{name}` must be a text, or several")))?;
             } else if let Some((_, option)) = KEYS.iter().find(|(known, _)| *known == name) {
-                let word = |text: &str| if name == "board" { text.into() } else { within(folder, text) };
+                let word =
+                    |text: &str| if name == "board" { text.into() } else { resolve_file(folder, text) };
                 let values = values(value.get_ref(), &word);
                 for value in
                     values.ok_or_else(|| wrong(at, format!("`{name}` must be a text, or several")))?
@@ -213,7 +214,7 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("cc67-project-{}-{}", std::process::id(), text.len()));
         std::fs::create_dir_all(&folder).expect("a folder");
         std::fs::write(folder.join(NAME), text).expect("a file");
-        let project = Project::above(&folder);
+        let project = Project::find_above(&folder);
         std::fs::remove_dir_all(&folder).expect("it is there");
         project.map(|project| project.expect("it was there"))
     }

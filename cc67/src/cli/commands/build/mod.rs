@@ -244,7 +244,9 @@ impl BuildArguments {
         for kind in emit {
             match kind {
                 Emit::Image => output::write(&program, &bytes)?,
-                Emit::Map => output::write(&names::beside(&program, "map"), map::render(linked).as_bytes())?,
+                Emit::Map => {
+                    output::write(&names::sibling_file(&program, "map"), map::render(linked).as_bytes())?;
+                }
                 Emit::Asm => {
                     let inspection = Inspection::read(&bytes).context("the image that was just made")?;
                     let folder = Folder::new(first.parent().unwrap_or(Path::new("")));
@@ -252,16 +254,16 @@ impl BuildArguments {
                         + "\n"
                         + &without_overlap(linked)
                         + &inspection.assembly(&folder, None);
-                    output::write(&names::beside(&program, "asm"), text.as_bytes())?;
+                    output::write(&names::sibling_file(&program, "asm"), text.as_bytes())?;
                 }
                 Emit::Bytecode => {
                     let text = vm::text::disassemble(&linked.text.bytes);
-                    output::write(&names::beside(&program, "txt"), text.as_bytes())?;
+                    output::write(&names::sibling_file(&program, "txt"), text.as_bytes())?;
                 }
                 Emit::Download => {
                     let image = Image::read(&bytes).context("the image that was just made")?;
                     let script = download::script(&image, self.thread);
-                    output::write(&names::beside(&program, "kmd"), script.as_bytes())?;
+                    output::write(&names::sibling_file(&program, "kmd"), script.as_bytes())?;
                 }
                 Emit::Object => {}
             }

@@ -26,7 +26,7 @@ pub(super) fn object(source: &Path) -> PathBuf {
 }
 
 /// A file next to an image: `prog(1).out` becomes `prog(1).map`.
-pub(super) fn beside(image: &Path, extension: &str) -> PathBuf {
+pub(super) fn sibling_file(image: &Path, extension: &str) -> PathBuf {
     if has_extension(image, &["out"]) {
         return image.with_extension(extension);
     }
@@ -56,8 +56,8 @@ mod tests {
 
     #[test]
     fn other_files_are_placed_next_to_the_image() {
-        assert_eq!(beside(Path::new("d/p(1).out"), "map"), Path::new("d/p(1).map"));
-        assert_eq!(beside(Path::new("d/image"), "map"), Path::new("d/image.map"));
+        assert_eq!(sibling_file(Path::new("d/p(1).out"), "map"), Path::new("d/p(1).map"));
+        assert_eq!(sibling_file(Path::new("d/image"), "map"), Path::new("d/image.map"));
         assert_eq!(object(Path::new("d/p.c")), Path::new("d/p.o"));
     }
 }

@@ -103,8 +103,8 @@ impl Outcome {
     }
 
     /// Records the final state of the modelled board or of a controller.
-    pub(super) fn look_at_model<T: Target>(&mut self, rig: &BoardSession<T>) {
-        let session = &rig.session;
+    pub(super) fn look_at_model<T: Target>(&mut self, board: &BoardSession<T>) {
+        let session = &board.session;
         self.ticks = session.tick();
         self.user_data = user_data(session);
         self.axes = axes(session);

@@ -93,7 +93,7 @@ impl RandomArguments {
         let mut tally = Tally::default();
         for seed in self.seed..self.seed.saturating_add(self.count) {
             let scenario = area.scenario(seed);
-            match compared(&scenario, firmware)?.0 {
+            match compare_scenario(&scenario, firmware)?.0 {
                 None => tally.equal += 1,
                 Some(difference) => {
                     self.report(&scenario, &difference, firmware)?;
@@ -107,13 +107,13 @@ impl RandomArguments {
     /// Reduces a scenario, shows it and stores it.
     fn report(&self, scenario: &Scenario, found: &Difference, firmware: &BootedFirmware) -> Result<()> {
         let mut same = |scenario: &Scenario| {
-            let (difference, ..) = compared(scenario, firmware).ok()?;
+            let (difference, ..) = compare_scenario(scenario, firmware).ok()?;
             difference.filter(|other| class(other) == class(found))
         };
         let small = reduce::reduced(scenario, &mut same);
-        let (difference, [model, booted]) = compared(&small, firmware)?;
+        let (difference, [model, booted]) = compare_scenario(&small, firmware)?;
         let difference = difference.with_context(|| format!("{} differs only once", small.name))?;
-        output::print(&shown(&small, &difference))?;
+        output::print(&describe_difference(&small, &difference))?;
         let Some(path) = &self.keep else { return Ok(()) };
         let failed = || format!("cannot write {}", path.display());
         let mut file = OpenOptions::new().create(true).append(true).open(path).with_context(failed)?;
@@ -124,7 +124,7 @@ impl RandomArguments {
 
 /// Plays a scenario on both boards; returns the first difference, and the observations of the model and of the
 /// firmware.
-fn compared(
+fn compare_scenario(
     scenario: &Scenario,
     firmware: &BootedFirmware,
 ) -> Result<(Option<Difference>, [Observation; 2])> {
@@ -140,7 +140,7 @@ fn class(difference: &Difference) -> String {
 }
 
 /// A reduced scenario and its difference, as text.
-fn shown(scenario: &Scenario, difference: &Difference) -> String {
+fn describe_difference(scenario: &Scenario, difference: &Difference) -> String {
     let mut text = format!("{}: {}", scenario.name, difference.what);
     if let Some(at) = difference.at {
         text += &format!(", sample {}", at * scenario.samples_every());

@@ -112,9 +112,9 @@ impl ConsoleArguments {
 }
 
 impl Work for &ConsoleArguments {
-    fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
-        rig.connect()?;
-        Console::new(self, rig)?.run()
+    fn on<T: Target>(self, mut board: BoardSession<T>) -> Result<Exit> {
+        board.connect()?;
+        Console::new(self, board)?.run()
     }
 }
 
@@ -129,18 +129,18 @@ enum Flow {
 /// A board, and the user or script that controls it.
 struct Console<'a, T: Target> {
     arguments: &'a ConsoleArguments,
-    rig: BoardSession<T>,
+    board: BoardSession<T>,
     shown: EventDestinations<'a>,
     /// Pressed inputs, each with its previous level.
     pressed: BTreeMap<Bit, bool>,
 }
 
 impl<'a, T: Target> Console<'a, T> {
-    fn new(arguments: &'a ConsoleArguments, rig: BoardSession<T>) -> Result<Self> {
-        let request = trace::request(&arguments.trace, &rig.session)?;
-        let mut rig = rig;
+    fn new(arguments: &'a ConsoleArguments, board: BoardSession<T>) -> Result<Self> {
+        let request = trace::request(&arguments.trace, &board.session)?;
+        let mut board = board;
         if let Some(request) = &request {
-            rig.session.record(request.clone());
+            board.session.record(request.clone());
         }
         let is_late = arguments.board.controller.on.is_some();
         let begin = |request| Trace::begin(&arguments.trace, request, is_late);
@@ -148,21 +148,21 @@ impl<'a, T: Target> Console<'a, T> {
         let is_script = !(io::stdin().is_terminal() && io::stdout().is_terminal());
         let screen = Screen::new(arguments.time, is_script && !arguments.realtime);
         let shown = EventDestinations { screen, failures: Failures::default(), trace, arguments };
-        let mut console = Self { arguments, rig, shown, pressed: BTreeMap::new() };
+        let mut console = Self { arguments, board, shown, pressed: BTreeMap::new() };
         console.know_programs();
         Ok(console)
     }
 
     /// Informs the screen about the loaded programs.
     fn know_programs(&mut self) {
-        self.shown.screen.programs = self.rig.session.debug().into_iter().map(|(_, debug)| debug).collect();
+        self.shown.screen.programs = self.board.session.debug().into_iter().map(|(_, debug)| debug).collect();
     }
 
     fn run(mut self) -> Result<Exit> {
         if io::stdin().is_terminal() && io::stdout().is_terminal() {
             let (input, printer) = input::keyboard()?;
             self.shown.screen.print_through(printer);
-            if self.arguments.fast { self.hurry(&input) } else { self.keep_pace(&input) }
+            if self.arguments.fast { self.run_at_full_speed(&input) } else { self.keep_pace(&input) }
         } else if self.arguments.realtime {
             self.keep_pace(&input::script_beside())
         } else {
@@ -199,7 +199,7 @@ impl<'a, T: Target> Console<'a, T> {
         };
         let limit = self.after(self.arguments.limit.unwrap_or(usual));
         let shown = &mut self.shown;
-        let end = self.rig.run(limit, None, &mut |event| shown.note(&event));
+        let end = self.board.run(limit, None, &mut |event| shown.note(&event));
         let exit = self.leave()?;
         if end == End::Limit && self.arguments.limit.is_none() && !is_connected && exit == Exit::Success {
             self.shown
@@ -212,39 +212,40 @@ impl<'a, T: Target> Console<'a, T> {
 
     /// Executes lines as they come while the board keeps pace with the clock.
     fn keep_pace(&mut self, input: &Lines) -> Result<Exit> {
-        self.rig.is_paced();
-        let pace = Pace::new(self.rig.session.tick());
+        self.board.is_paced();
+        let pace = Pace::new(self.board.session.tick());
         let mut interrupted = false;
         loop {
             if self.take(input, input.within(BEAT), &mut interrupted) == Flow::Leave {
                 return self.leave();
             }
             // A board that falls behind still leaves time for the keyboard.
-            self.advance(pace.due().min(Ticks::new(self.rig.session.tick().get() + TICKS_PER_POLL)));
+            self.advance(pace.due().min(Ticks::new(self.board.session.tick().get() + TICKS_PER_POLL)));
         }
     }
 
     /// Executes lines as they come; while programs run, the board runs as fast as it can.
-    fn hurry(&mut self, input: &Lines) -> Result<Exit> {
+    fn run_at_full_speed(&mut self, input: &Lines) -> Result<Exit> {
         let mut interrupted = false;
         loop {
-            let next = if self.rig.session.has_ended() { input.next() } else { input.within(Duration::ZERO) };
+            let next =
+                if self.board.session.has_ended() { input.next() } else { input.within(Duration::ZERO) };
             if self.take(input, next, &mut interrupted) == Flow::Leave {
                 return self.leave();
             }
-            self.advance(Ticks::new(self.rig.session.tick().get() + TICKS_PER_POLL));
+            self.advance(Ticks::new(self.board.session.tick().get() + TICKS_PER_POLL));
         }
     }
 
     /// Ends the console, and shows output that is still held.
     fn leave(&mut self) -> Result<Exit> {
         let shown = &mut self.shown;
-        self.rig.finish(&mut |event| shown.note(&event))?;
+        self.board.finish(&mut |event| shown.note(&event))?;
         if let Some(trace) = &mut self.shown.trace {
-            trace.know_board(&self.rig.session);
+            trace.know_board(&self.board.session);
         }
-        self.shown.finish(self.rig.session.tick())?;
-        if let Some(why) = self.rig.session.target().lost() {
+        self.shown.finish(self.board.session.tick())?;
+        if let Some(why) = self.board.session.target().loss_reason() {
             bail!("{why}");
         }
         Ok(self.shown.failures.exit(End::AllEnded, true).0)
@@ -276,7 +277,7 @@ impl<'a, T: Target> Console<'a, T> {
 
     /// Executes one line.
     fn line(&mut self, line: &str) -> Flow {
-        if self.rig.session.target().is_in_command() {
+        if self.board.session.target().is_in_command() {
             self.send(line.as_bytes());
             return Flow::Continue;
         }
@@ -287,7 +288,7 @@ impl<'a, T: Target> Console<'a, T> {
         match words::parse(text) {
             Some(Ok(Word::Quit)) => return Flow::Leave,
             Some(Ok(word)) => {
-                if let Err(error) = self.obey(&word) {
+                if let Err(error) = self.execute_word(&word) {
                     self.shown.screen.note(&format!("{error:#}"));
                 }
             }
@@ -299,7 +300,7 @@ impl<'a, T: Target> Console<'a, T> {
     }
 
     /// Executes one of the console's own commands.
-    fn obey(&mut self, word: &Word) -> Result<()> {
+    fn execute_word(&mut self, word: &Word) -> Result<()> {
         match word {
             Word::Help(name) => self.shown.screen.text(&words::help(name.as_deref())),
             Word::Kill { except } => {
@@ -310,20 +311,20 @@ impl<'a, T: Target> Console<'a, T> {
                 self.load(&assign(std::slice::from_ref(file))?, starts)?;
             }
             Word::Time => {
-                let text = format!("{:.6}\n", self.rig.session.tick().get() as f64 * TIMEBASE);
+                let text = format!("{:.6}\n", self.board.session.tick().get() as f64 * TIMEBASE);
                 self.shown.screen.text(&text);
             }
             Word::Wait(seconds) => self.advance(self.after(*seconds)),
             Word::Press(bit) => {
-                let level = self.rig.session.bit(*bit);
+                let level = self.board.session.bit(*bit);
                 self.pressed.entry(*bit).or_insert(level);
-                self.rig.session.act(&format!("bit {bit} = {}", u8::from(!level)))?;
+                self.board.session.act(&format!("bit {bit} = {}", u8::from(!level)))?;
             }
             Word::Release(bit) => {
                 let level = self.pressed.remove(bit).unwrap_or(false);
-                self.rig.session.act(&format!("bit {bit} = {}", u8::from(level)))?;
+                self.board.session.act(&format!("bit {bit} = {}", u8::from(level)))?;
             }
-            Word::Act(statement) => self.rig.session.act(statement)?,
+            Word::Act(statement) => self.board.session.act(statement)?,
             Word::Quit => {}
         }
         Ok(())
@@ -331,31 +332,33 @@ impl<'a, T: Target> Console<'a, T> {
 
     /// Compiles and loads programs, and starts the first of them.
     fn load(&mut self, programs: &[ProgramFile], starts: usize) -> Result<()> {
-        let loaded = self.rig.load(programs, starts, &self.arguments.compiler);
+        let loaded = self.board.load(programs, starts, &self.arguments.compiler);
         self.know_programs();
         loaded.map(drop)
     }
 
     /// Stops threads.
     fn stop(&mut self, is_invoked: impl Fn(ThreadId) -> bool) {
-        ThreadId::all().filter(|thread| is_invoked(*thread)).for_each(|thread| self.rig.session.stop(thread));
+        ThreadId::all()
+            .filter(|thread| is_invoked(*thread))
+            .for_each(|thread| self.board.session.stop(thread));
     }
 
     /// Sends a line to the board, and lets the time pass that it takes.
     fn send(&mut self, line: &[u8]) {
         let shown = &mut self.shown;
-        self.rig.exchange(line, &mut |event| shown.note(&event));
+        self.board.exchange(line, &mut |event| shown.note(&event));
     }
 
     /// The tick after this many seconds.
     fn after(&self, seconds: f64) -> Ticks {
-        self.rig.session.tick_after(seconds)
+        self.board.session.tick_after(seconds)
     }
 
     /// Runs to the end of a tick.
     fn advance(&mut self, limit: Ticks) {
         let shown = &mut self.shown;
-        self.rig.advance(limit, &mut |event| shown.note(&event));
+        self.board.advance(limit, &mut |event| shown.note(&event));
     }
 }
 

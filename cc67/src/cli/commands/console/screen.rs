@@ -72,7 +72,7 @@ impl Screen {
             EventKind::Remark(remark @ Remark { message: Message::UndrivenInput { bit, level }, .. })
                 if self.groups =>
             {
-                self.undriven.push((remark::who(remark, &self.programs), *bit, *level));
+                self.undriven.push((remark::subject_text(remark, &self.programs), *bit, *level));
             }
             _ => {
                 if let Some(text) = remark::describe(event, &self.programs) {

@@ -97,7 +97,7 @@ pub(super) fn parse(line: &str) -> Option<Result<Word>> {
         "load" => needed("a file").map(Word::Load),
         "run" => needed("a file").map(Word::Run),
         // `Kill 2` is a command of the board.
-        "kill" if rest.starts_with("all") => kill(rest),
+        "kill" if rest.starts_with("all") => parse_kill(rest),
         "wait" => needed("seconds").and_then(|text| match seconds(&text) {
             Ok(seconds) => Ok(Word::Wait(seconds)),
             Err(error) => bail!("`{text}` is {error}"),
@@ -131,7 +131,7 @@ fn bit(text: &str) -> Result<Bit> {
 }
 
 /// `all`, or `all but N`.
-fn kill(text: &str) -> Result<Word> {
+fn parse_kill(text: &str) -> Result<Word> {
     let words: Vec<&str> = text.split_whitespace().collect();
     match words[..] {
         ["all"] => Ok(Word::Kill { except: None }),

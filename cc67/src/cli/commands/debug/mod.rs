@@ -83,7 +83,7 @@ impl LaunchArguments {
     fn with_sidecars(words: &[OsString]) -> Result<Self> {
         let arguments = Self::try_parse_from(words)?;
         let Some(programs) = arguments.debug.with_sidecars() else { return Ok(arguments) };
-        let sidecars = Sidecars::of("debug", programs, words, |option| super::knows("debug", option))?;
+        let sidecars = Sidecars::of("debug", programs, words, |option| super::is_option_of("debug", option))?;
         Ok(Self::try_parse_from([&sidecars.options, words, &sidecars.also].concat())?)
     }
 }
@@ -105,19 +105,19 @@ pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
         (None, None) => {}
     }
     let Some(debugger) = debugger(arguments)? else { return Ok(Exit::Failure) };
-    converse(debugger, arguments)
+    run_session(debugger, arguments)
 }
 
 /// Reads commands from a file or a user.
-fn converse<T: Target + 'static>(debugger: Debugger<T>, arguments: &DebugArguments) -> Result<Exit> {
+fn run_session<T: Target + 'static>(debugger: Debugger<T>, arguments: &DebugArguments) -> Result<Exit> {
     let shell = Shell::new(debugger);
     for why in shell.debugger().programs().unknown() {
         screen::note(&why);
     }
     let shell = Rc::new(RefCell::new(shell));
     let exit = match &arguments.batch {
-        Some(path) => batch(&mut shell.borrow_mut(), path),
-        None => terminal::talk(&shell),
+        Some(path) => execute_file(&mut shell.borrow_mut(), path),
+        None => terminal::run_interactive(&shell),
     };
     note_active(&shell.borrow());
     exit
@@ -130,7 +130,7 @@ fn note_active<T: Target>(shell: &Shell<T>) {
         return;
     }
     let programs = session.programs().iter().map(|program| program.thread);
-    let programs = programs.filter(|_| session.target().lost().is_none());
+    let programs = programs.filter(|_| session.target().loss_reason().is_none());
     for thread in programs.filter(|thread| session.thread(*thread).is_active()) {
         screen::note(&format!("thread {thread} continues on the controller; `kill {thread}` stops it"));
     }
@@ -154,7 +154,7 @@ fn debugger(arguments: &DebugArguments) -> Result<Option<Debugger<AnyTarget>>> {
 }
 
 /// Executes the commands of a file.
-fn batch<T: Target>(shell: &mut Shell<T>, path: &std::path::Path) -> Result<Exit> {
+fn execute_file<T: Target>(shell: &mut Shell<T>, path: &std::path::Path) -> Result<Exit> {
     let text =
         if path.as_os_str() == "-" { io::read_to_string(io::stdin())?.into_bytes() } else { read(path)? };
     for line in String::from_utf8_lossy(&text).lines() {

@@ -24,10 +24,10 @@ use crate::cli::io::{interrupt, output};
 const PROMPT: &str = "(cc67) ";
 
 /// Takes commands until the end of the input.
-pub(super) fn talk<T: Target + 'static>(shell: &Rc<RefCell<Shell<T>>>) -> Result<Exit> {
+pub(super) fn run_interactive<T: Target + 'static>(shell: &Rc<RefCell<Shell<T>>>) -> Result<Exit> {
     if !io::stdin().is_terminal() {
         for line in io::stdin().lines() {
-            if !obey(&mut shell.borrow_mut(), &line?)? {
+            if !execute_line(&mut shell.borrow_mut(), &line?)? {
                 break;
             }
         }
@@ -44,7 +44,7 @@ pub(super) fn talk<T: Target + 'static>(shell: &Rc<RefCell<Shell<T>>>) -> Result
             Ok(line) => {
                 // If a line cannot be added to the history, it only has to be typed again.
                 let _ = editor.add_history_entry(&line);
-                if !obey(&mut shell.borrow_mut(), &line)? {
+                if !execute_line(&mut shell.borrow_mut(), &line)? {
                     return Ok(Exit::Success);
                 }
             }
@@ -55,7 +55,7 @@ pub(super) fn talk<T: Target + 'static>(shell: &Rc<RefCell<Shell<T>>>) -> Result
 }
 
 /// Executes a line; returns whether to continue.
-fn obey<T: Target>(shell: &mut Shell<T>, line: &str) -> Result<bool> {
+fn execute_line<T: Target>(shell: &mut Shell<T>, line: &str) -> Result<bool> {
     match shell.command(line, &mut |text| show(text)) {
         Ok(CommandOutput::Text(text)) => output::print(&text)?,
         Ok(CommandOutput::Quit) => return Ok(false),

@@ -175,7 +175,7 @@ fn thread(text: u32) -> Option<ThreadId> {
 /// Returns the errors of a compilation as text, if it has any.
 fn silent_without_errors(compilation: &Compilation) -> Result<(), String> {
     let mut levels = Levels::default();
-    levels.show(Lint::Vendor);
+    levels.enable(Lint::Vendor);
     let shown: Vec<_> =
         compilation.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic)).collect();
     if shown.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {

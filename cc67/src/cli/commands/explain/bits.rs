@@ -37,7 +37,7 @@ pub(super) fn answer(name: &str) -> Result<Option<String>> {
         range.last,
         on_a_line(range.doc),
         use_of(range, number),
-        outside(range, number)
+        describe_hardware(range, number)
     )))
 }
 
@@ -71,7 +71,7 @@ fn use_of(range: &BitRange, number: u32) -> String {
 }
 
 /// Describes the required hardware, and how the simulated machine drives it.
-fn outside(range: &BitRange, number: u32) -> String {
+fn describe_hardware(range: &BitRange, number: u32) -> String {
     let board = match range.kind {
         BitKind::KanalogInput
         | BitKind::KanalogOptoInput

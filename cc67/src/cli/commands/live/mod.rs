@@ -153,7 +153,7 @@ struct Demonstration {
 }
 
 impl Work for LivePage<'_> {
-    fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
+    fn on<T: Target>(self, mut board: BoardSession<T>) -> Result<Exit> {
         let Self { arguments, waiting, server, end } = self;
         let mut show = arguments.show()?;
         // An attached editor cannot be switched to another board.
@@ -176,15 +176,15 @@ impl Work for LivePage<'_> {
                 server.insert(listening)
             }
         };
-        let keeper = Box::new(rig.flash_keeper());
-        let company = BoardUsers { attendant: rig.attendant.take(), keeper: Some(keeper) };
+        let keeper = Box::new(board.flash_keeper());
+        let company = BoardUsers { attendant: board.attendant.take(), keeper: Some(keeper) };
         let mut check = || match arguments.setup() {
             Ok(Some(_)) => Ok(()),
             Ok(None) => Err("the board is not made again: a program has errors".to_owned()),
             Err(error) => Err(format!("the board is not made again: {error:#}")),
         };
-        *end = server.run(&mut rig.session, show, company, &mut check);
-        rig.finish(&mut |_| ())?;
+        *end = server.run(&mut board.session, show, company, &mut check);
+        board.finish(&mut |_| ())?;
         Ok(Exit::Success)
     }
 }

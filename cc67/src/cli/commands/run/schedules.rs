@@ -142,14 +142,14 @@ impl ScheduledRun {
 }
 
 fn run(setup: Setup, limit: Ticks, is_limited: bool) -> Result<ScheduledRun> {
-    let mut rig = setup.rig(BytecodeEngine::default())?;
+    let mut board = setup.modelled_session(BytecodeEngine::default())?;
     let (mut shown, mut seen) = (ScheduledRun::default(), Failures::default());
     let mut sink = |event: Event| {
         seen.note(&event);
         shown.note(&event);
     };
-    let end = rig.run(limit, None, &mut sink);
-    rig.finish(&mut sink)?;
+    let end = board.run(limit, None, &mut sink);
+    board.finish(&mut sink)?;
     shown.exit = Some(seen.exit(end, is_limited).0);
     Ok(shown)
 }

@@ -169,12 +169,12 @@ impl<'a, T: Target> ServedBoard<'a, T> {
         let mut events = Vec::new();
         self.board.attend(&mut |event| events.push(event));
         self.take(events);
-        let mut wishes = self.board.beat()?;
-        self.take(std::mem::take(&mut wishes.events));
+        let mut requests = self.board.update()?;
+        self.take(std::mem::take(&mut requests.events));
         if let Some(log) = &mut self.log {
-            wishes.acts.iter().for_each(|act| log.act(self.board.tick(), act, self.board.is_in_command()));
+            requests.acts.iter().for_each(|act| log.act(self.board.tick(), act, self.board.is_in_command()));
         }
-        Some(wishes)
+        Some(requests)
     }
 
     /// Makes programs that print wait while too many lines wait for the console; `waiting` is the number of lines
@@ -250,7 +250,7 @@ impl<'a, T: Target> ServedBoard<'a, T> {
                 if let Some(text) = remark::describe(&event, &self.board.programs()) {
                     terminal::note(&text);
                     if let Some(scene) = remark::scene(&event) {
-                        terminal::aside(&scene.to_string());
+                        terminal::print_separated(&scene.to_string());
                     }
                 }
             }

@@ -44,7 +44,7 @@ pub(super) fn serve(terms: &ServeTerms<'_>, arguments: &ServeArguments) -> Resul
     refuse_for_several(terms, arguments)?;
     let boards = &arguments.serves;
     let mut works = Vec::new();
-    let mut desks = Vec::new();
+    let mut dispatchers = Vec::new();
     for (index, board) in boards.iter().enumerate() {
         ensure!(
             boards.iter().skip(index + 1).all(|other| other.name != board.name),
@@ -53,10 +53,10 @@ pub(super) fn serve(terms: &ServeTerms<'_>, arguments: &ServeArguments) -> Resul
         );
         let Some(setup) = board.setup(arguments)? else { return Ok(Exit::Failure) };
         let (notes, inbox) = channel();
-        desks.push(notes);
+        dispatchers.push(notes);
         works.push((board, setup, inbox));
     }
-    let opening = ServerStart::new(terms, desks)?;
+    let opening = ServerStart::new(terms, dispatchers)?;
     let opening = &opening;
     thread::scope(|scope| {
         let mut threads = Vec::new();

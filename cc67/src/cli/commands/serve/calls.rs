@@ -28,7 +28,7 @@ impl<T: Target> Dispatcher<'_, T> {
     /// Executes a client's request; returns the reply, if it is already known.
     pub(super) fn ask(&mut self, client: u64, request: &Request) -> Option<Reply> {
         if request.index(self.slot.boards) != Some(self.slot.index) {
-            return Some(Reply::number(elsewhere(&request.call)));
+            return Some(Reply::number(missing_board_result(&request.call)));
         }
         let success = Some(Reply::number(0));
         match &request.call {
@@ -179,7 +179,7 @@ impl<T: Target> Dispatcher<'_, T> {
 }
 
 /// The result of a call for a board that does not exist.
-fn elsewhere(call: &Call) -> i32 {
+fn missing_board_result(call: &Call) -> i32 {
     if *call == Call::Lock {
         Lock::NotConnected as i32
     } else if *call == Call::Location {

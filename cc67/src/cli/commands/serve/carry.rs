@@ -19,14 +19,14 @@ const PAUSE: Duration = Duration::from_millis(1);
 #[derive(Debug)]
 pub(super) struct PluggedClient {
     number: u64,
-    desk: Sender<DispatcherMessage>,
+    dispatcher: Sender<DispatcherMessage>,
     untaken: Arc<AtomicUsize>,
 }
 
 /// Informs the dispatcher of a new client of the link.
-pub(super) fn plug(
+pub(super) fn plug_client(
     number: u64,
-    desk: &Sender<DispatcherMessage>,
+    dispatcher: &Sender<DispatcherMessage>,
     writer: impl Write + Send + 'static,
 ) -> PluggedClient {
     let (outgoing, inbox) = channel();
@@ -34,8 +34,8 @@ pub(super) fn plug(
     let client = WireClient { number, outgoing, unread: Arc::clone(&unread), untaken: Arc::clone(&untaken) };
     thread::spawn(move || send(writer, &inbox, &unread));
     // If the dispatcher has ended, sending fails below, too.
-    let _ = desk.send(DispatcherMessage::Plugged(client));
-    PluggedClient { number, desk: desk.clone(), untaken }
+    let _ = dispatcher.send(DispatcherMessage::Plugged(client));
+    PluggedClient { number, dispatcher: dispatcher.clone(), untaken }
 }
 
 impl PluggedClient {
@@ -54,7 +54,7 @@ impl PluggedClient {
             };
             self.untaken.fetch_add(count, Ordering::Relaxed);
             let bytes = buffer.get(..count).unwrap_or_default().to_vec();
-            if self.desk.send(DispatcherMessage::Bytes(self.number, bytes)).is_err() {
+            if self.dispatcher.send(DispatcherMessage::Bytes(self.number, bytes)).is_err() {
                 break;
             }
         }
@@ -64,7 +64,7 @@ impl PluggedClient {
 impl Drop for PluggedClient {
     fn drop(&mut self) {
         // An error means that the dispatcher has already ended.
-        let _ = self.desk.send(DispatcherMessage::Unplugged(self.number));
+        let _ = self.dispatcher.send(DispatcherMessage::Unplugged(self.number));
     }
 }
 

@@ -171,7 +171,7 @@ pub(super) struct PageState {
     /// The requests of clients since then.
     held: Vec<DispatcherMessage>,
     /// The speed that was last requested, where the inner `None` stands for a stopped clock.
-    wished: Option<Option<f64>>,
+    requested_speed: Option<Option<f64>>,
     /// Script commands, each with the time at which it was typed.
     commands: VecDeque<(Instant, String)>,
 }
@@ -213,7 +213,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
             }
             if self.page.stopped.is_none() {
                 self.catch_up(limit, AT_ONCE);
-                self.settle();
+                self.answer_waiting();
             }
             self.board.forward();
             self.look_at_page();
@@ -236,7 +236,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
             (Some(_), Some(_)) => SHORT_BEAT,
             (None, Some(_)) if self.ticks_wanted() > 0 => Duration::ZERO,
             (None, Some(until)) => until.saturating_duration_since(now()),
-            (None, None) if self.page.wished.is_some() || self.board.is_attended() => BEAT,
+            (None, None) if self.page.requested_speed.is_some() || self.board.is_attended() => BEAT,
             // Time passes only in exchanges.
             (None, None) => return Some(self.inbox.incoming.recv().unwrap_or(DispatcherMessage::End)),
         };
@@ -254,7 +254,8 @@ impl<'a, T: Target> Dispatcher<'a, T> {
                 self.clients.insert(client, answers);
             }
             DispatcherMessage::Unknown(client, message) => {
-                let text = format!("client {client}: {}, its connection is closed", unknown(&message));
+                let text =
+                    format!("client {client}: {}, its connection is closed", describe_unknown(&message));
                 terminal::note(&text);
                 self.board.log(&text);
             }
@@ -328,13 +329,13 @@ impl<'a, T: Target> Dispatcher<'a, T> {
     /// Shows the board on its page, if it has one, and executes the page's requests.
     fn look_at_page(&mut self) {
         self.board.hold_back(self.console.lines.len());
-        let Some(wishes) = self.board.show() else { return };
+        let Some(requests) = self.board.show() else { return };
         let time = now();
-        self.page.commands.extend(wishes.commands.into_iter().map(|line| (time, line)));
-        let before = self.page.wished.replace(wishes.speed);
-        let has_changed = before.map_or(wishes.speed.is_none(), |before| before != wishes.speed);
+        self.page.commands.extend(requests.commands.into_iter().map(|line| (time, line)));
+        let before = self.page.requested_speed.replace(requests.speed);
+        let has_changed = before.map_or(requests.speed.is_none(), |before| before != requests.speed);
         if self.is_clocked() && has_changed {
-            self.set_clock(wishes.speed, time);
+            self.set_clock(requests.speed, time);
         }
         self.send_commands(time);
     }
@@ -439,7 +440,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
     }
 
     /// Answers the clients whose line has come, or whose time limit has passed.
-    fn settle(&mut self) {
+    fn answer_waiting(&mut self) {
         let time = now();
         for mut waiting in std::mem::take(&mut self.waiting) {
             match self.look(&mut waiting, time) {
@@ -490,7 +491,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
 }
 
 /// Describes a message that is not a request, with the number of the call at its beginning.
-fn unknown(message: &[u8]) -> String {
+fn describe_unknown(message: &[u8]) -> String {
     match message.first_chunk() {
         Some(code) => format!("there is no call {} with these arguments", i32::from_le_bytes(*code)),
         None => format!("a message of {} bytes is not a request", message.len()),

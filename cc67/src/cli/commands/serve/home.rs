@@ -111,7 +111,7 @@ fn explanation() -> String {
 }
 
 /// Stores the arguments for the server that the library starts.
-pub(super) fn remember(folder: &Path, words: impl Iterator<Item = OsString>) -> Result<()> {
+pub(super) fn store_arguments(folder: &Path, words: impl Iterator<Item = OsString>) -> Result<()> {
     let here = std::env::current_dir().context("cannot find the present folder")?;
     let mut text = here.into_os_string();
     let mut skips = false;

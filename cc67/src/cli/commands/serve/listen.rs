@@ -17,7 +17,7 @@ use std::time::Duration;
 use anyhow::{Context, Result, bail};
 use cc67_host::seats::{FIRST_WORDS, Seat, Seats};
 
-use super::carry::plug;
+use super::carry::plug_client;
 use super::connection::{self, ClientConnection, Received};
 use super::desk::DispatcherMessage;
 use super::message::Request;
@@ -67,11 +67,11 @@ pub(super) struct ConnectionRouter {
 pub(super) fn listen(
     addresses: &[String],
     option: &str,
-    desks: &[Sender<DispatcherMessage>],
+    dispatchers: &[Sender<DispatcherMessage>],
 ) -> Result<SocketFiles> {
-    let (desk, others) = desks.split_first().context("a board is served")?;
-    let door = ConnectionRouter {
-        dispatcher: desk.clone(),
+    let (dispatcher, others) = dispatchers.split_first().context("a board is served")?;
+    let router = ConnectionRouter {
+        dispatcher: dispatcher.clone(),
         others: others.into(),
         numbers: Arc::default(),
         seats: Seats::new(MOST_CLIENTS),
@@ -80,20 +80,20 @@ pub(super) fn listen(
     for address in addresses {
         let complaint = || format!("`{option} {address}`");
         if let Some(port) = address.strip_prefix("tcp:") {
-            listen_on_port(port, &door).with_context(complaint)?;
+            listen_on_port(port, &router).with_context(complaint)?;
         } else if let Some(port) = address.strip_prefix(RAW_PORT) {
-            carry_on_port(port, &door).with_context(complaint)?;
+            carry_on_port(port, &router).with_context(complaint)?;
         } else if let Some(name) = pipe::name(address) {
-            pipe::listen(&name, &door).with_context(complaint)?;
+            pipe::listen(&name, &router).with_context(complaint)?;
         } else if address == TERMINAL {
-            carry_on_terminal(&door).with_context(complaint)?;
+            carry_on_terminal(&router).with_context(complaint)?;
         } else if address.contains(':') && !address.contains('/') {
             bail!(
                 "{}: neither tcp:PORT, tcp-raw:PORT, pty, pipe[:NAME] nor the path of a socket",
                 complaint()
             );
         } else {
-            places.0.push(listen_on_path(address, &door).with_context(complaint)?);
+            places.0.push(listen_on_path(address, &router).with_context(complaint)?);
         }
     }
     Ok(places)
@@ -105,26 +105,26 @@ pub(super) fn is_wire(address: &str) -> bool {
 }
 
 /// Creates a pseudo-terminal that carries the board's own bytes.
-fn carry_on_terminal(door: &ConnectionRouter) -> Result<()> {
+fn carry_on_terminal(router: &ConnectionRouter) -> Result<()> {
     let terminal = Terminal::open()?;
     terminal::note(&format!("a board is served on serial:{}", terminal.name()));
     let writer = terminal.controller()?;
-    let door = door.clone();
+    let router = router.clone();
     in_background(move || {
-        let number = door.numbers.fetch_add(1, Ordering::Relaxed) + 1;
-        plug(number, &door.dispatcher, writer).carry(terminal);
+        let number = router.numbers.fetch_add(1, Ordering::Relaxed) + 1;
+        plug_client(number, &router.dispatcher, writer).carry(terminal);
     })
 }
 
 /// Accepts connections that carry the board's own bytes, one at a time.
-fn carry_on_port(port: &str, door: &ConnectionRouter) -> Result<()> {
+fn carry_on_port(port: &str, router: &ConnectionRouter) -> Result<()> {
     let listener = bind(port)?;
     terminal::note(&format!("a board is served on tcp:localhost:{}", listener.local_addr()?.port()));
-    let (door, link) = (door.clone(), RawLink::default());
+    let (router, link) = (router.clone(), RawLink::default());
     in_background(move || {
         // Small messages should be sent at once; without this setting they are only delayed.
         let streams = connections(listener.incoming()).inspect(|stream| drop(stream.set_nodelay(true)));
-        streams.for_each(|stream| link.admit(stream, &door));
+        streams.for_each(|stream| link.admit(stream, &router));
     })
 }
 
@@ -147,18 +147,18 @@ impl RawLink {
     }
 
     /// Passes on the bytes of a client in a separate thread, or rejects it.
-    fn admit(&self, stream: TcpStream, door: &ConnectionRouter) {
-        let number = door.numbers.fetch_add(1, Ordering::Relaxed) + 1;
-        if let Err(why) = self.carry(number, stream, door) {
+    fn admit(&self, stream: TcpStream, router: &ConnectionRouter) {
+        let number = router.numbers.fetch_add(1, Ordering::Relaxed) + 1;
+        if let Err(why) = self.carry(number, stream, router) {
             terminal::note(&format!("client {number}: refused, {why}"));
         }
     }
 
-    fn carry(&self, number: u64, stream: TcpStream, door: &ConnectionRouter) -> Result<()> {
+    fn carry(&self, number: u64, stream: TcpStream, router: &ConnectionRouter) -> Result<()> {
         let writer = stream.try_clone()?;
         let (has_spoken, before) = self.take(number, &stream)?;
         // The dispatcher must learn of the new client before the end of the previous one.
-        let plugged = plug(number, &door.dispatcher, writer);
+        let plugged = plug_client(number, &router.dispatcher, writer);
         if let Some(before) = before {
             // The previous client may already have disconnected.
             let _ = before.shutdown(Shutdown::Both);
@@ -215,14 +215,14 @@ fn bind(port: &str) -> Result<TcpListener> {
     TcpListener::bind((Ipv4Addr::LOCALHOST, number)).context("cannot listen there")
 }
 
-fn listen_on_port(port: &str, door: &ConnectionRouter) -> Result<()> {
+fn listen_on_port(port: &str, router: &ConnectionRouter) -> Result<()> {
     let listener = bind(port)?;
     terminal::note(&format!("a board is served on tcp:{}", listener.local_addr()?.port()));
-    let door = door.clone();
+    let router = router.clone();
     in_background(move || {
         // Small messages should be sent at once; without this setting they are only delayed.
         let streams = connections(listener.incoming()).inspect(|stream| drop(stream.set_nodelay(true)));
-        streams.for_each(|stream| door.enter(stream));
+        streams.for_each(|stream| router.enter(stream));
     })
 }
 
@@ -238,7 +238,7 @@ fn in_background(work: impl FnOnce() + Send + 'static) -> Result<()> {
 }
 
 #[cfg(unix)]
-fn listen_on_path(address: &str, door: &ConnectionRouter) -> Result<PathBuf> {
+fn listen_on_path(address: &str, router: &ConnectionRouter) -> Result<PathBuf> {
     use std::os::unix::net::{UnixListener, UnixStream};
 
     // A socket left by a killed server serves nobody.
@@ -252,8 +252,8 @@ fn listen_on_path(address: &str, door: &ConnectionRouter) -> Result<PathBuf> {
     }
     let listener = UnixListener::bind(address).context("cannot listen there")?;
     terminal::note(&format!("a board is served on {address}"));
-    let door = door.clone();
-    in_background(move || connections(listener.incoming()).for_each(|stream| door.enter(stream)))?;
+    let router = router.clone();
+    in_background(move || connections(listener.incoming()).for_each(|stream| router.enter(stream)))?;
     Ok(std::path::absolute(address).unwrap_or_else(|_| address.into()))
 }
 
@@ -264,14 +264,14 @@ fn listen_on_path(_: &str, _: &ConnectionRouter) -> Result<PathBuf> {
 
 impl ConnectionRouter {
     /// The dispatchers of all boards.
-    fn desks(&self) -> impl Iterator<Item = &Sender<DispatcherMessage>> {
+    fn dispatchers(&self) -> impl Iterator<Item = &Sender<DispatcherMessage>> {
         iter::once(&self.dispatcher).chain(&*self.others)
     }
 
     /// The dispatcher for a request.
-    fn desk(&self, request: &Request) -> &Sender<DispatcherMessage> {
+    fn dispatcher_for(&self, request: &Request) -> &Sender<DispatcherMessage> {
         let index = request.index(1 + self.others.len()).unwrap_or(0);
-        self.desks().nth(index).unwrap_or(&self.dispatcher)
+        self.dispatchers().nth(index).unwrap_or(&self.dispatcher)
     }
 
     /// Serves a connection in a separate thread; if there are too many, closes the one that has been silent the
@@ -287,8 +287,9 @@ impl ConnectionRouter {
                 "client {number}: {MOST_CLIENTS} are connected; the one that was silent the longest is disconnected"
             ));
         }
-        let door = self.clone();
-        let spawned = thread::Builder::new().spawn(move || serve(number, connection, &admission.seat, &door));
+        let router = self.clone();
+        let spawned =
+            thread::Builder::new().spawn(move || serve(number, connection, &admission.seat, &router));
         if spawned.is_err() {
             terminal::note(&format!("client {number}: refused, there is no thread for it"));
         }
@@ -296,7 +297,7 @@ impl ConnectionRouter {
 }
 
 /// Answers requests until the client disconnects, or makes an invalid request.
-fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, door: &ConnectionRouter) {
+fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, router: &ConnectionRouter) {
     connection.limit_wait(Some(FIRST_WORDS));
     let mut received = connection.receive_first();
     connection.limit_wait(None);
@@ -313,18 +314,18 @@ fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, door: 
         Received::Message(_) => {}
     }
     let (answers, inbox) = channel();
-    for desk in door.desks() {
+    for dispatcher in router.dispatchers() {
         // If the dispatcher has ended, there is no answer below.
-        let _ = desk.send(DispatcherMessage::Connected(number, answers.clone()));
+        let _ = dispatcher.send(DispatcherMessage::Connected(number, answers.clone()));
     }
     while let Received::Message(bytes) = &received {
-        seat.hear();
+        seat.mark_active();
         let Some(request) = Request::read(bytes) else {
             // An error means that the dispatcher has ended.
-            let _ = door.dispatcher.send(DispatcherMessage::Unknown(number, bytes.clone()));
+            let _ = router.dispatcher.send(DispatcherMessage::Unknown(number, bytes.clone()));
             break;
         };
-        if door.desk(&request).send(DispatcherMessage::Request(number, request)).is_err() {
+        if router.dispatcher_for(&request).send(DispatcherMessage::Request(number, request)).is_err() {
             break;
         }
         let Ok(messages) = inbox.recv() else { break };
@@ -333,8 +334,8 @@ fn serve(number: u64, mut connection: impl ClientConnection, seat: &Seat, door: 
         }
         received = connection.receive();
     }
-    for desk in door.desks() {
+    for dispatcher in router.dispatchers() {
         // An error means that the dispatcher has already ended.
-        let _ = desk.send(DispatcherMessage::Disconnected(number));
+        let _ = dispatcher.send(DispatcherMessage::Disconnected(number));
     }
 }

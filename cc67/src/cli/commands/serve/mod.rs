@@ -177,7 +177,7 @@ pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
     };
     if let Some(folder) = &arguments.home {
         let folder = home::make(folder, arguments.mcodes.as_deref())?;
-        home::remember(&folder, home::own_words())?;
+        home::store_arguments(&folder, home::own_words())?;
         output::print(&home::lines(&folder))?;
     }
     if !arguments.serves.is_empty() {
@@ -239,16 +239,16 @@ struct ServerStart<'a> {
 impl<'a> ServerStart<'a> {
     /// Prepares boards with these dispatchers; Ctrl-C and a termination request of the operating system end all of
     /// them.
-    fn new(terms: &'a ServeTerms<'a>, desks: Vec<Sender<DispatcherMessage>>) -> Result<Self> {
+    fn new(terms: &'a ServeTerms<'a>, dispatchers: Vec<Sender<DispatcherMessage>>) -> Result<Self> {
         let is_ending = Arc::<AtomicBool>::default();
-        let (is_told, told) = (Arc::clone(&is_ending), desks.clone());
+        let (is_signalled, receivers) = (Arc::clone(&is_ending), dispatchers.clone());
         let end = move || {
-            is_told.store(true, Ordering::Relaxed);
-            end_all(&told);
+            is_signalled.store(true, Ordering::Relaxed);
+            end_all(&receivers);
         };
         ctrlc::set_handler(end).context("cannot take Ctrl-C")?;
-        let missing = AtomicUsize::new(desks.len());
-        Ok(Self { terms, dispatchers: desks, is_ending, missing, socket_files: Mutex::default() })
+        let missing = AtomicUsize::new(dispatchers.len());
+        Ok(Self { terms, dispatchers, is_ending, missing, socket_files: Mutex::default() })
     }
 
     /// Notes that a board is ready; listeners start with the last one.
@@ -265,10 +265,10 @@ impl<'a> ServerStart<'a> {
 }
 
 /// Ends all dispatchers.
-fn end_all(desks: &[Sender<DispatcherMessage>]) {
-    for desk in desks {
+fn end_all(dispatchers: &[Sender<DispatcherMessage>]) {
+    for dispatcher in dispatchers {
         // An error means that the dispatcher has already ended.
-        let _ = desk.send(DispatcherMessage::End);
+        let _ = dispatcher.send(DispatcherMessage::End);
     }
 }
 
@@ -282,11 +282,11 @@ struct BoardWork<'a> {
 }
 
 impl Work for BoardWork<'_> {
-    fn on<T: Target>(self, mut rig: BoardSession<T>) -> Result<Exit> {
+    fn on<T: Target>(self, mut board: BoardSession<T>) -> Result<Exit> {
         let Self { opening, inbox, index, name } = self;
         let terms = opening.terms;
-        rig.connect()?;
-        let (board, trace) = UsableBoard::new(rig, terms, Arc::clone(&opening.is_ending))?;
+        board.connect()?;
+        let (board, trace) = UsableBoard::new(board, terms, Arc::clone(&opening.is_ending))?;
         let board = ServedBoard::new(board, trace, terms)?;
         opening.note_ready()?;
         name.into_iter().for_each(terminal::name_subject);

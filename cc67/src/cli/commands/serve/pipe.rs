@@ -66,7 +66,7 @@ mod windows {
     const PAUSE: Duration = Duration::from_millis(100);
 
     /// Accepts connections at a pipe in the background.
-    pub(in crate::cli::commands::serve) fn listen(path: &str, door: &ConnectionRouter) -> Result<()> {
+    pub(in crate::cli::commands::serve) fn listen(path: &str, router: &ConnectionRouter) -> Result<()> {
         // Not all systems with named pipes reject a second server.
         let is_served = match OpenOptions::new().read(true).write(true).open(path) {
             Ok(_) => true,
@@ -84,10 +84,10 @@ mod windows {
             _ => anyhow::Error::new(error).context("cannot listen there"),
         })?;
         terminal::note(&format!("a board is served on {path}"));
-        let door = door.clone();
+        let router = router.clone();
         let accept = move || loop {
             match listener.accept() {
-                Ok(stream) => door.enter(PipeConnection { stream, has_lengths: false }),
+                Ok(stream) => router.enter(PipeConnection { stream, has_lengths: false }),
                 Err(_) => thread::sleep(PAUSE),
             }
         };

@@ -32,7 +32,7 @@ pub(super) struct PageRequests {
 
 /// A board that clients can use.
 pub(super) struct UsableBoard<T: Target> {
-    session: BoardSession<T>,
+    board: BoardSession<T>,
     /// Set when the server should end, even if a debugger has stopped the board.
     is_ending: Arc<AtomicBool>,
     #[cfg(feature = "live")]
@@ -42,7 +42,7 @@ pub(super) struct UsableBoard<T: Target> {
 impl<T: Target> UsableBoard<T> {
     /// Creates the served board of a session, with a page if the terms require one; returns it with its trace.
     pub(super) fn new(
-        mut rig: BoardSession<T>,
+        mut board: BoardSession<T>,
         terms: &ServeTerms<'_>,
         is_ending: Arc<AtomicBool>,
     ) -> Result<(Self, Option<Trace>)> {
@@ -51,18 +51,18 @@ impl<T: Target> UsableBoard<T> {
         let is_shown_only = terms.page.is_some() && terms.trace.is_unwritten();
         #[cfg(not(feature = "live"))]
         let is_shown_only = false;
-        let request = if is_shown_only { None } else { trace::request(terms.trace, &rig.session)? };
+        let request = if is_shown_only { None } else { trace::request(terms.trace, &board.session)? };
         if let Some(request) = &request {
-            rig.session.record(request.clone());
+            board.session.record(request.clone());
         }
         let trace = request.as_ref().map(|request| Trace::begin(terms.trace, request, false)).transpose()?;
-        rig.session.stop_recording();
-        rig.session.listen(true);
-        rig.is_paced();
+        board.session.stop_recording();
+        board.session.listen(true);
+        board.is_paced();
         #[cfg(feature = "live")]
-        let view = terms.page.as_ref().map(|page| page.open(&mut rig.session)).transpose()?;
+        let view = terms.page.as_ref().map(|page| page.open(&mut board.session)).transpose()?;
         let board = Self {
-            session: rig,
+            board,
             is_ending,
             #[cfg(feature = "live")]
             view,
@@ -74,7 +74,7 @@ impl<T: Target> UsableBoard<T> {
 impl<T: Target> UsableBoard<T> {
     /// The number of the last completed tick.
     pub(super) fn tick(&self) -> Ticks {
-        self.session.session.tick()
+        self.board.session.tick()
     }
 
     /// Runs to the end of a tick.
@@ -82,7 +82,7 @@ impl<T: Target> UsableBoard<T> {
         let is_ending = &self.is_ending;
         #[cfg(feature = "live")]
         let view = &mut self.view;
-        self.session.advance_attended(limit, sink, &mut |_session| {
+        self.board.advance_attended(limit, sink, &mut |_session| {
             #[cfg(feature = "live")]
             if let Some(view) = view {
                 view.show(_session);
@@ -93,7 +93,7 @@ impl<T: Target> UsableBoard<T> {
 
     /// Returns whether a debugger is attached, or can attach.
     pub(super) fn is_attended(&self) -> bool {
-        self.session.attendant.is_some()
+        self.board.attendant.is_some()
     }
 
     /// Serves a debugger while time does not pass.
@@ -105,60 +105,60 @@ impl<T: Target> UsableBoard<T> {
 
     /// Sends bytes over the link.
     pub(super) fn receive(&mut self, bytes: &[u8]) {
-        self.session.session.receive(bytes);
+        self.board.session.receive(bytes);
     }
 
     /// From now on keeps the bytes sent by the board, for the only client of its link.
     pub(super) fn tap_wire(&mut self) {
-        self.session.session.tap_wire();
+        self.board.session.tap_wire();
     }
 
     /// Returns the bytes that it has sent since the last call.
     pub(super) fn take_wire(&mut self) -> Vec<u8> {
-        self.session.session.take_wire()
+        self.board.session.take_wire()
     }
 
     /// Returns whether the board still has to take bytes.
     pub(super) fn is_receiving(&self) -> bool {
-        self.session.session.target().is_receiving()
+        self.board.session.target().is_receiving()
     }
 
     /// Returns whether a command waits for data lines.
     pub(super) fn is_in_command(&self) -> bool {
-        self.session.session.target().is_in_command()
+        self.board.session.target().is_in_command()
     }
 
     /// Sets whether somebody takes console lines; if not, programs that print have to wait.
     pub(super) fn listen(&mut self, listens: bool) {
-        self.session.session.listen(listens);
+        self.board.session.listen(listens);
     }
 
     /// Returns the debug information of its programs.
     pub(super) fn programs(&self) -> Vec<DebugInfo> {
-        self.session.session.debug().into_iter().map(|(_, debug)| debug).collect()
+        self.board.session.debug().into_iter().map(|(_, debug)| debug).collect()
     }
 
     /// Ends serving it.
     pub(super) fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()> {
         #[cfg(feature = "live")]
         self.view.iter().for_each(LiveView::close);
-        self.session.finish(sink)
+        self.board.finish(sink)
     }
 
     /// Shows an event.
     #[cfg(feature = "live")]
     pub(super) fn show(&mut self, event: &Event) {
         if let Some(view) = &mut self.view {
-            view.hear(&self.session.session, event);
+            view.handle_event(&self.board.session, event);
         }
     }
 
     /// Shows the present state and executes requests of pages; returns the requests for the dispatcher, if there is a
     /// page.
     #[cfg(feature = "live")]
-    pub(super) fn beat(&mut self) -> Option<PageRequests> {
-        let wishes = self.view.as_mut()?.beat(&mut self.session.session);
-        let cc67_live::OwnerRequests { events, commands, acts, speed } = wishes;
+    pub(super) fn update(&mut self) -> Option<PageRequests> {
+        let requests = self.view.as_mut()?.update(&mut self.board.session);
+        let cc67_live::OwnerRequests { events, commands, acts, speed } = requests;
         Some(PageRequests { events, commands, acts, speed })
     }
 
@@ -170,7 +170,7 @@ impl<T: Target> UsableBoard<T> {
     /// Returns `None`: there is no page.
     #[cfg(not(feature = "live"))]
     #[expect(clippy::unused_self, reason = "with a page, it is shown there")]
-    pub(super) fn beat(&mut self) -> Option<PageRequests> {
+    pub(super) fn update(&mut self) -> Option<PageRequests> {
         None
     }
 }

@@ -102,7 +102,7 @@ fn note_orphans(folder: &Path) -> Result<()> {
 fn project(path: &Path) -> Result<Vec<String>> {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let folder = folder.canonicalize().with_context(|| format!("cannot read {}", folder.display()))?;
-    let Some(project) = Project::above(&folder)? else { return Ok(Vec::new()) };
+    let Some(project) = Project::find_above(&folder)? else { return Ok(Vec::new()) };
     let (_, options) = project.parted_options("test", |option| super::OWN_OPTIONS.contains(&option));
     Ok(options.into_iter().map(|word| word.to_string_lossy().into_owned()).collect())
 }

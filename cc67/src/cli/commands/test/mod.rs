@@ -103,7 +103,7 @@ impl TestArguments {
     pub(super) fn of_project(&self) -> Result<Vec<OsString>> {
         let Some(path) = self.paths.first() else { return Ok(Vec::new()) };
         let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new("")) };
-        let project = Project::above(folder)?;
+        let project = Project::find_above(folder)?;
         let own = |project: Project| project.parted_options("test", |option| OWN_OPTIONS.contains(&option)).0;
         Ok(project.map(own).unwrap_or_default())
     }
@@ -148,7 +148,7 @@ pub(super) fn test(arguments: &TestArguments) -> Result<Exit> {
     let (mut verdicts, took) = execute::all(&cases, &executors, &arguments.options, arguments.bless, jobs)?;
     for (case, verdict) in cases.iter().zip(&mut verdicts) {
         if let Verdict::Asked(shown) = verdict
-            && (arguments.force || agrees(&case.name(), shown)?)
+            && (arguments.force || ask_to_accept(&case.name(), shown)?)
         {
             execute::write(case, shown)?;
             *verdict = Verdict::Blessed;
@@ -169,12 +169,14 @@ pub(super) fn test(arguments: &TestArguments) -> Result<Exit> {
 
 /// Asks whether faults, remarks, traps and an exit code should become expected output; without a terminal, it
 /// returns false.
-fn agrees(name: &str, shown: &Shown) -> Result<bool> {
+fn ask_to_accept(name: &str, shown: &Shown) -> Result<bool> {
     if !io::stdin().is_terminal() {
         return Ok(false);
     }
     let notes = human::indented(&shown.doubts());
-    terminal::aside(&format!("{name}: this would become the expected output:\n{notes}Write it? [y/N] "));
+    terminal::print_separated(&format!(
+        "{name}: this would become the expected output:\n{notes}Write it? [y/N] "
+    ));
     let mut answer = String::new();
     io::stdin().read_line(&mut answer).context("cannot read the answer")?;
     Ok(matches!(answer.trim(), "y" | "Y" | "yes"))

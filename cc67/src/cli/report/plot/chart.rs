@@ -82,7 +82,7 @@ pub(in crate::cli) enum Scale {
 
 impl Scale {
     /// The number at a position.
-    pub(in crate::cli::report) fn shown(self, position: f64) -> f64 {
+    pub(in crate::cli::report) fn number_at(self, position: f64) -> f64 {
         match self {
             Self::Linear => position,
             // Rounded, because the logarithm and its inverse have changed the last digits.

@@ -64,8 +64,10 @@ fn curves(chart: &Chart) -> String {
             let points = points(chart, panel, line);
             let width = thickness(&points);
             let (red, green, blue) = COLORS[index % COLORS.len()];
-            let places: Vec<String> =
-                points.iter().map(|(x, y)| format!("{},{}", short(*x), short(y + f64::from(top)))).collect();
+            let places: Vec<String> = points
+                .iter()
+                .map(|(x, y)| format!("{},{}", round_coordinate(*x), round_coordinate(y + f64::from(top))))
+                .collect();
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
@@ -78,7 +80,7 @@ fn curves(chart: &Chart) -> String {
 }
 
 /// Rounds a coordinate to a hundredth of a pixel.
-fn short(value: f64) -> f64 {
+fn round_coordinate(value: f64) -> f64 {
     libm::round(value * 100.0) / 100.0
 }
 
@@ -178,12 +180,12 @@ fn write<B: DrawingBackend>(
 fn marks(chart: &Chart) -> Vec<f64> {
     match chart.scale {
         Scale::Linear => steps(chart.range, 10),
-        Scale::Logarithmic => decades(chart.range),
+        Scale::Logarithmic => log_ticks(chart.range),
     }
 }
 
 /// The logarithms of 1, 2 and 5 in each decade of a range of logarithms.
-fn decades((low, high): (f64, f64)) -> Vec<f64> {
+fn log_ticks((low, high): (f64, f64)) -> Vec<f64> {
     let decades = libm::floor(low) as i32..=libm::ceil(high) as i32;
     let marks = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|part| f64::from(decade) + libm::log10(part)));
     marks.filter(|mark| (low - 1e-9..=high + 1e-9).contains(mark)).collect()
@@ -214,7 +216,7 @@ pub(super) fn number(value: f64) -> String {
 }
 
 /// Returns the horizontal position of a time.
-fn across(chart: &Chart, time: f64) -> i32 {
+fn x_of_time(chart: &Chart, time: f64) -> i32 {
     place(chart, time) as i32
 }
 
@@ -245,7 +247,7 @@ fn draw_panel<B: DrawingBackend>(
         area.draw(&PathElement::new(vec![from, to], color)).map_err(text_of)
     };
     for time in marks(chart) {
-        line((across(chart, time), top), (across(chart, time), bottom), faint)?;
+        line((x_of_time(chart, time), top), (x_of_time(chart, time), bottom), faint)?;
     }
     for value in steps((low, high), 5) {
         line((left, up(value)), (right, up(value)), faint)?;
@@ -296,7 +298,7 @@ fn draw_strip<B: DrawingBackend>(
     write(area, &strip.name, (LEFT as i32 - 10 - width, 6), 13, &RGBColor(70, 70, 70))?;
     let ground = [(LEFT as i32, bottom), ((WIDTH - RIGHT) as i32, bottom)];
     area.draw(&PathElement::new(ground.to_vec(), RGBColor(200, 200, 200))).map_err(text_of)?;
-    for (from, to) in bars(chart, strip) {
+    for (from, to) in strip_bars(chart, strip) {
         let corners = [(from, top), (to, bottom)];
         area.draw(&Rectangle::new(corners, color(index).filled())).map_err(text_of)?;
     }
@@ -310,7 +312,7 @@ fn draw_strip<B: DrawingBackend>(
 fn spaced_marks(chart: &Chart, strip: &Strip) -> Vec<i32> {
     let mut spaced: Vec<i32> = Vec::new();
     for mark in &strip.marks {
-        let at = across(chart, mark.at);
+        let at = x_of_time(chart, mark.at);
         if spaced.last().is_none_or(|last| at - last >= MARK_GAP) {
             spaced.push(at);
         }
@@ -323,7 +325,7 @@ fn draw_links<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Result<(), St
     let first = TITLE + PANEL * chart.panels.len() as u32;
     let middle = |strip: usize| (first + STRIP * strip as u32 + STRIP / 2) as i32;
     for link in &chart.links {
-        let ends = link.strips.map(|strip| (across(chart, link.at), middle(strip)));
+        let ends = link.strips.map(|strip| (x_of_time(chart, link.at), middle(strip)));
         area.draw(&PathElement::new(ends, RED.stroke_width(2))).map_err(text_of)?;
         for end in ends {
             area.draw(&Circle::new(end, 4, RED.filled())).map_err(text_of)?;
@@ -333,10 +335,10 @@ fn draw_links<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Result<(), St
 }
 
 /// The spans of a strip in pixels; spans without a visible gap are merged.
-fn bars(chart: &Chart, strip: &Strip) -> Vec<(i32, i32)> {
+fn strip_bars(chart: &Chart, strip: &Strip) -> Vec<(i32, i32)> {
     let mut bars: Vec<(i32, i32)> = Vec::new();
     for (from, to) in &strip.spans {
-        let (from, to) = (across(chart, *from), across(chart, *to).max(across(chart, *from) + 1));
+        let (from, to) = (x_of_time(chart, *from), x_of_time(chart, *to).max(x_of_time(chart, *from) + 1));
         match bars.last_mut() {
             Some((_, last)) if from <= *last => *last = to.max(*last),
             _ => bars.push((from, to)),
@@ -365,9 +367,9 @@ fn without_flat(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 fn draw_marks<B: DrawingBackend>(chart: &Chart, area: &Area<B>, top: i32) -> Result<(), String> {
     let style = ("sans-serif", 13).into_font();
     for mark in marks(chart) {
-        let label = number(chart.scale.shown(mark));
+        let label = number(chart.scale.number_at(mark));
         let width = style.box_size(&label).map_err(text_of)?.0 as i32;
-        write(area, &label, (across(chart, mark) - width / 2, top), 13, &RGBColor(70, 70, 70))?;
+        write(area, &label, (x_of_time(chart, mark) - width / 2, top), 13, &RGBColor(70, 70, 70))?;
     }
     Ok(())
 }

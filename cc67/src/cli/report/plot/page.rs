@@ -84,19 +84,19 @@ pub(super) fn html(chart: &Chart) -> Result<Vec<u8>> {
             .iter()
             .map(|strip| PageStrip {
                 name: &strip.name,
-                spans: bounded(joined(&strip.spans), chart.range, spans),
+                spans: limit_spans(merge_spans(&strip.spans), chart.range, spans),
                 marks: strip
                     .marks
                     .iter()
                     .take(MARKS)
-                    .map(|mark| (short(mark.at), mark.text.as_str()))
+                    .map(|mark| (round_to_nine_digits(mark.at), mark.text.as_str()))
                     .collect(),
             })
             .collect(),
         links: chart
             .links
             .iter()
-            .map(|link| PageLink { at: short(link.at), strips: link.strips, text: &link.text })
+            .map(|link| PageLink { at: round_to_nine_digits(link.at), strips: link.strips, text: &link.text })
             .collect(),
     };
     // A `</script>` in a name must not end the data.
@@ -106,14 +106,17 @@ pub(super) fn html(chart: &Chart) -> Result<Vec<u8>> {
 
 fn page_line(line: &Line, range: (f64, f64), most: usize) -> PageLine<'_> {
     // First the points without influence on the look of a line are removed, and only the rest is thinned.
-    let line_of_corners = Line { name: String::new(), points: corners(line.points.clone()) };
+    let line_of_corners = Line { name: String::new(), points: drop_redundant_points(line.points.clone()) };
     let points = line_of_corners.thinned(range, most / 4);
-    let (t, v) = points.into_iter().map(|(time, value)| (short(time), short(value))).unzip();
+    let (t, v) = points
+        .into_iter()
+        .map(|(time, value)| (round_to_nine_digits(time), round_to_nine_digits(value)))
+        .unzip();
     PageLine { name: &line.name, t, v }
 }
 
 /// The points except those within an interval of constant value, which do not change the line.
-fn corners(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+fn drop_redundant_points(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let mut kept: Vec<(f64, f64)> = Vec::new();
     for point in points {
         if let [.., before, last] = kept.as_mut_slice()
@@ -129,10 +132,10 @@ fn corners(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 }
 
 /// Merges spans that touch.
-fn joined(spans: &[(f64, f64)]) -> Vec<(f64, f64)> {
+fn merge_spans(spans: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut joined: Vec<(f64, f64)> = Vec::new();
     for (from, to) in spans {
-        let (from, to) = (short(*from), short(*to));
+        let (from, to) = (round_to_nine_digits(*from), round_to_nine_digits(*to));
         match joined.last_mut() {
             Some((_, end)) if *end == from => *end = to,
             _ => joined.push((from, to)),
@@ -142,7 +145,7 @@ fn joined(spans: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 /// At most about `most` spans: those that are too close to be distinguished are merged.
-fn bounded(spans: Vec<(f64, f64)>, range: (f64, f64), most: usize) -> Vec<(f64, f64)> {
+fn limit_spans(spans: Vec<(f64, f64)>, range: (f64, f64), most: usize) -> Vec<(f64, f64)> {
     if spans.len() <= most {
         return spans;
     }
@@ -158,7 +161,7 @@ fn bounded(spans: Vec<(f64, f64)>, range: (f64, f64), most: usize) -> Vec<(f64, 
 }
 
 /// Rounds a number to nine digits, more than a page can show; all digits would double its size.
-fn short(value: f64) -> f64 {
+fn round_to_nine_digits(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
 }
 
@@ -169,7 +172,7 @@ mod tests {
     #[test]
     fn a_line_keeps_its_corners() {
         let points = [1.0, 1.0, 1.0, 2.0, 2.0, 3.0].into_iter().enumerate();
-        let kept = corners(points.map(|(time, value)| (time as f64, value)).collect());
+        let kept = drop_redundant_points(points.map(|(time, value)| (time as f64, value)).collect());
         assert_eq!(kept, [(0.0, 1.0), (2.0, 1.0), (3.0, 2.0), (4.0, 2.0), (5.0, 3.0)]);
     }
 
@@ -196,11 +199,14 @@ mod tests {
 
     #[test]
     fn touching_spans_are_joined() {
-        assert_eq!(joined(&[(0.0, 1.0), (1.0, 2.0), (3.0, 4.0)]), [(0.0, 2.0), (3.0, 4.0)]);
+        assert_eq!(merge_spans(&[(0.0, 1.0), (1.0, 2.0), (3.0, 4.0)]), [(0.0, 2.0), (3.0, 4.0)]);
     }
 
     #[test]
     fn numbers_have_no_more_digits_than_needed() {
-        assert_eq!([short(1.0 / 3.0), short(-1234.5), short(0.0)], [0.333_333_333, -1234.5, 0.0]);
+        assert_eq!(
+            [round_to_nine_digits(1.0 / 3.0), round_to_nine_digits(-1234.5), round_to_nine_digits(0.0)],
+            [0.333_333_333, -1234.5, 0.0]
+        );
     }
 }

@@ -103,7 +103,7 @@ mod tests {
         let bode = chart("b.txt", BODE).expect("it is one");
         assert_eq!(bode.abscissa, "frequency (Hz)");
         let shown: Vec<_> =
-            bode.panels[0].lines[0].points.iter().map(|point| bode.scale.shown(point.0)).collect();
+            bode.panels[0].lines[0].points.iter().map(|point| bode.scale.number_at(point.0)).collect();
         assert_eq!(shown, [5.425347, 10.85069]);
         let titles: Vec<_> = bode.panels.iter().map(|panel| panel.heading()).collect();
         assert_eq!(titles, ["open loop: magnitude (dB)", "open loop: phase (degrees)"]);

@@ -70,11 +70,11 @@ fn strip(variable: &Variable, end: f64) -> Strip {
         }
     }
     spans.extend(high_since.map(|since| (since, end)));
-    Strip { name: spaced(&variable.name), spans, marks: Vec::new() }
+    Strip { name: run_notation(&variable.name), spans, marks: Vec::new() }
 }
 
 /// `bit46` in the notation of a run's plots.
-fn spaced(name: &str) -> String {
+fn run_notation(name: &str) -> String {
     for word in ["bit", "thread"] {
         match name.strip_prefix(word) {
             Some(number) if number.parse::<u32>().is_ok() => return format!("{word} {number}"),

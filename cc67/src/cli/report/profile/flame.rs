@@ -12,7 +12,7 @@ const CYCLES_PER_US: i64 = 200;
 
 /// Draws the profile; the tower of each thread contains its functions and lines.
 pub(super) fn draw(account: &Account) -> Result<Vec<u8>> {
-    let lines = folded(account);
+    let lines = folded_stacks(account);
     let mut options = Options::default();
     options.title = "Processor time".to_owned();
     options.count_name = "µs".to_owned();
@@ -24,7 +24,7 @@ pub(super) fn draw(account: &Account) -> Result<Vec<u8>> {
 }
 
 /// `thread 1;main;work count` for each position, in the format of flame graph tools.
-fn folded(account: &Account) -> Vec<String> {
+fn folded_stacks(account: &Account) -> Vec<String> {
     let mut lines = Vec::new();
     for (place, spent) in account {
         let mut tower = vec![place.whose.to_string()];

@@ -30,7 +30,7 @@ pub(super) fn table(account: &Account, end: Cycles) -> String {
 }
 
 fn of_one(text: &mut String, whose: TimeConsumer, places: &[(&ProfilePlace, &SpentTime)], end: Cycles) {
-    let all = places.iter().fold(SpentTime::default(), |sum, (_, spent)| plus(sum, **spent));
+    let all = places.iter().fold(SpentTime::default(), |sum, (_, spent)| add_times(sum, **spent));
     let _ = writeln!(
         text,
         "\n{}: computing {} ({}), waiting {} ({}), the rest went to the servo and to others",
@@ -66,12 +66,12 @@ fn functions(places: &[(&ProfilePlace, &SpentTime)]) -> Vec<(String, FunctionTim
         names.extend(place.firmware.as_ref().map(|name| format!("{name} (firmware)")));
         if let Some(innermost) = names.last() {
             let function = functions.entry(innermost.clone()).or_default();
-            function.own = plus(function.own, **spent);
+            function.own = add_times(function.own, **spent);
         }
         // A recursive function is counted once.
         for name in names.into_iter().collect::<BTreeSet<_>>() {
             let function = functions.entry(name).or_default();
-            function.total = plus(function.total, **spent);
+            function.total = add_times(function.total, **spent);
         }
     }
     longest_first(functions, |function| function.total)
@@ -87,7 +87,7 @@ fn lines(places: &[(&ProfilePlace, &SpentTime)]) -> Vec<(String, SpentTime)> {
             None => frame.function.clone(),
         };
         let sum = lines.entry(name).or_default();
-        *sum = plus(*sum, **spent);
+        *sum = add_times(*sum, **spent);
     }
     longest_first(lines, |spent| *spent)
 }
@@ -98,7 +98,7 @@ fn longest_first<T>(rows: BTreeMap<String, T>, spent: impl Fn(&T) -> SpentTime) 
     rows
 }
 
-fn plus(a: SpentTime, b: SpentTime) -> SpentTime {
+fn add_times(a: SpentTime, b: SpentTime) -> SpentTime {
     SpentTime { computing: a.computing + b.computing, waiting: a.waiting + b.waiting }
 }
 

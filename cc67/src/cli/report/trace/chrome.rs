@@ -154,7 +154,7 @@ impl Events {
     fn sample(&mut self, at: Cycles, values: &[f64]) -> io::Result<()> {
         let columns: Vec<(usize, Option<Bit>, String)> = self
             .columns
-            .shown()
+            .table_columns()
             .map(|(index, shown)| (index, shown.item().and_then(Item::bit), shown.to_string()))
             .collect();
         for (index, bit, name) in columns {

@@ -41,12 +41,12 @@ impl Columns {
     }
 
     /// The quantities for tables and dumps, and the index of each in a sample.
-    pub(super) fn shown(&self) -> impl Iterator<Item = (usize, &Quantity)> {
+    pub(super) fn table_columns(&self) -> impl Iterator<Item = (usize, &Quantity)> {
         self.of_enabled().filter(|(_, quantity)| !self.is_default || !is_load(quantity))
     }
 
     /// The quantities for a plot: the positions of axes with `is_measured`, and the loads of the others.
-    pub(super) fn pictured(&self, is_measured: impl Fn(usize) -> bool) -> Vec<(usize, &Quantity)> {
+    pub(super) fn plot_columns(&self, is_measured: impl Fn(usize) -> bool) -> Vec<(usize, &Quantity)> {
         let is_shown = |quantity: &Quantity| match quantity.item() {
             Some(item) if item.kind() == "pos" => is_measured(item.index()),
             Some(item) if item.kind() == LOAD => !is_measured(item.index()),

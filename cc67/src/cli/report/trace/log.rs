@@ -115,7 +115,7 @@ impl Log {
     /// Returns the quantities to show, each with its index in a sample; for axes that are not measured, the positions
     /// of the loads.
     pub(super) fn columns(&self, is_measured: impl Fn(usize) -> bool) -> Vec<(usize, &Quantity)> {
-        self.columns.pictured(is_measured)
+        self.columns.plot_columns(is_measured)
     }
 
     /// The bits that have changed, in ascending order.

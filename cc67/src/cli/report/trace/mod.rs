@@ -57,7 +57,7 @@ pub(crate) fn request<T: Target>(
         return Ok(Some(request));
     }
     for quantity in &request.quantities {
-        if let Some(item) = quantity.items().iter().find(|item| !session.target().knows(**item)) {
+        if let Some(item) = quantity.items().iter().find(|item| !session.target().has_item(**item)) {
             bail!(
                 "`--watch {quantity}`: `{item}` belongs to an option board that {} does not have",
                 session.target().name()

@@ -142,7 +142,11 @@ fn link(
 ) -> Option<Link> {
     let Speaker::Thread(one) = about.speaker else { return None };
     let other = about.other_thread()?.thread?;
-    Some(Link { at: seconds(at), strips: [strip(one)?, strip(other)?], text: remark::words(about, programs) })
+    Some(Link {
+        at: seconds(at),
+        strips: [strip(one)?, strip(other)?],
+        text: remark::remark_text(about, programs),
+    })
 }
 
 #[cfg(test)]

@@ -65,7 +65,7 @@ impl Sink for Table {
             self.line()?;
         }
         let Self { mut draft, body, columns, .. } = *self;
-        let shown: Vec<_> = columns.shown().collect();
+        let shown: Vec<_> = columns.table_columns().collect();
         write!(draft, "time")?;
         for (_, quantity) in &shown {
             write!(draft, ",{}", field(&quantity.to_string()))?;

@@ -91,7 +91,7 @@ impl Dump {
     fn sample(&mut self, at: Cycles, values: &[f64]) -> io::Result<()> {
         let columns: Vec<(usize, Option<Bit>)> = self
             .columns
-            .shown()
+            .table_columns()
             .map(|(index, quantity)| (index, quantity.item().and_then(Item::bit)))
             .collect();
         for (index, bit) in columns {

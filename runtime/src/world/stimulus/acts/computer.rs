@@ -18,12 +18,12 @@ pub(crate) fn read_uart(reader: &mut StatementReader<'_>) -> Result<(Vec<u8>,), 
 }
 
 pub(crate) fn uart(scene: &mut Scene<'_, '_, '_>, bytes: Vec<u8>) {
-    scene.access.io.uart.arrive(&bytes, scene.context.now);
+    scene.access.io.uart.queue_bytes(&bytes, scene.context.now);
 }
 
 pub(crate) fn read_persist(reader: &mut StatementReader<'_>) -> Result<(usize, i32), Mistake> {
     let index = reader.persist()?;
-    reader.equals()?;
+    reader.expect_equals()?;
     Ok((index, reader.word32()?))
 }
 

@@ -24,7 +24,7 @@ const KANALOG_INPUTS: std::ops::RangeInclusive<u16> = 128..=143;
 
 pub(crate) fn read_bit(reader: &mut StatementReader<'_>) -> Result<(Bit, bool), Mistake> {
     let bit = reader.input_number()?;
-    reader.equals()?;
+    reader.expect_equals()?;
     Ok((bit, reader.level()?))
 }
 
@@ -63,13 +63,13 @@ pub(crate) fn pulse(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) {
         scene.access.out.remark(scene.context.now, Message::ShortPulse { bit, us });
     }
     let level = level(scene, bit);
-    let gives_back = takes(scene, bit, duration);
+    let gives_back = detach_switch(scene, bit, duration);
     set(scene, bit, !level);
     end(scene, bit, duration, level, gives_back);
 }
 
 /// Detaches an input from its switch for a time, unless an earlier action has done so; returns whether it has.
-fn takes(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) -> bool {
+fn detach_switch(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) -> bool {
     let is_switch = scene.access.machine.mechanics.contact(bit).is_some();
     let is_taken = is_switch && !scene.access.machine.mechanics.is_held(bit);
     if is_taken {
@@ -113,7 +113,7 @@ const BOUNCES: [f64; 4] = [0.12, 0.3, 0.55, 1.0];
 
 pub(crate) fn bounce(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) {
     let old = level(scene, bit);
-    let gives_back = takes(scene, bit, duration);
+    let gives_back = detach_switch(scene, bit, duration);
     set(scene, bit, !old);
     for (index, part) in BOUNCES.into_iter().enumerate() {
         let after = Cycles::new((duration.get() as f64 * part) as i64);
@@ -140,7 +140,7 @@ pub(crate) fn connect_adc(channel: &usize, access: &mut WorldAccess<'_>, memory:
 
 pub(crate) fn read_adc(reader: &mut StatementReader<'_>) -> Result<(usize, Wave), Mistake> {
     let channel = reader.below("an analog input from 0 to 7", ADC_CHANNELS)?;
-    reader.equals()?;
+    reader.expect_equals()?;
     Ok((channel, wave(reader)?))
 }
 

@@ -34,19 +34,19 @@ pub(crate) fn push(scene: &mut Scene<'_, '_, '_>, axis: AxisId, units: f64) {
 pub(crate) fn read_pull(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64), Mistake> {
     let axis = reader.axis()?;
     reader.expect("pull")?;
-    reader.equals()?;
+    reader.expect_equals()?;
     Ok((axis, reader.number("a speed in units per second")?))
 }
 
 /// Changes the constant load on a motor, which affects its speed.
 pub(crate) fn pull(scene: &mut Scene<'_, '_, '_>, axis: AxisId, speed: f64) {
-    scene.access.machine.loads.pull(axis, speed);
+    scene.access.machine.loads.set_load(axis, speed);
 }
 
 pub(crate) fn read_load_spindle(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64), Mistake> {
     let axis = reader.axis()?;
     reader.expect("load")?;
-    reader.equals()?;
+    reader.expect_equals()?;
     let column = reader.column();
     let load = reader.number("a part of full load from 0 to 1")?;
     if (0.0..=1.0).contains(&load) {

@@ -23,7 +23,7 @@ pub(crate) fn read_device(reader: &mut StatementReader<'_>) -> Result<(DeviceSpe
     let mut settings = Vec::new();
     while let Some(key) = reader.peek().map(str::to_owned) {
         reader.advance();
-        reader.equals()?;
+        reader.expect_equals()?;
         settings.push((key, reader.take("a value", |word| Some(word.to_owned()))?));
     }
     let device = DeviceSpec { name, settings };
@@ -59,7 +59,7 @@ pub(crate) fn read_konnect(reader: &mut StatementReader<'_>) -> Result<(KonnectB
     let port = if reader.accept("aux0") { Port::Aux0 } else { Port::Aux1 };
     reader.expect("input")?;
     let input = reader.below("an input from 0 to 31", 32)? as u8;
-    reader.equals()?;
+    reader.expect_equals()?;
     Ok((KonnectBoard { port, address }, input, reader.level()?))
 }
 
@@ -82,7 +82,7 @@ pub(crate) fn read_snapamp(
         "B" => Some(Side::B),
         _ => None,
     })?;
-    reader.equals()?;
+    reader.expect_equals()?;
     Ok((board, side, quantity, reader.number("a number")?))
 }
 

@@ -102,7 +102,7 @@ impl ScenarioWriter {
     }
 
     /// Adds a statement some slices after the previous one.
-    fn later(&mut self, low: u32, high: u32, text: impl Into<String>) {
+    fn add_later(&mut self, low: u32, high: u32, text: impl Into<String>) {
         self.slice += low + self.draw.below(high - low + 1);
         let slice = self.slice;
         self.part(PartKind::Slice { thread: 1, slice }, text);

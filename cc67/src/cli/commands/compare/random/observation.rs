@@ -71,14 +71,14 @@ impl ScenarioBoard<'_> {
             setup.programs.push(program);
         }
         Ok(match self {
-            Self::Model => played(&mut setup.session()?, scenario),
-            Self::Firmware(firmware) => played(&mut setup.session_on_firmware(firmware)?, scenario),
+            Self::Model => play_session(&mut setup.session()?, scenario),
+            Self::Firmware(firmware) => play_session(&mut setup.session_on_firmware(firmware)?, scenario),
         })
     }
 }
 
 /// Plays a scenario on a board with loaded programs.
-fn played<T: Target>(session: &mut Session<T>, scenario: &Scenario) -> Observation {
+fn play_session<T: Target>(session: &mut Session<T>, scenario: &Scenario) -> Observation {
     let mut observation = Observation::default();
     if scenario.is_session() {
         session.tap_wire();

@@ -20,7 +20,7 @@ pub(super) fn draw(writer: &mut ScenarioWriter) {
     for _ in 0..1 + writer.draw.below(6) {
         let axis = writer.draw.below(count);
         let text = statement(writer, axis, speeds[axis as usize]);
-        writer.later(2, 45, text);
+        writer.add_later(2, 45, text);
     }
     let more = 3 + writer.draw.below(80);
     let destinations = (0..count).map(|axis| format!("chan[{axis}].Dest"));

@@ -22,7 +22,7 @@ pub(super) fn draw(writer: &mut ScenarioWriter) {
     }
     for _ in 0..1 + writer.draw.below(6) {
         let text = statement(writer, channel);
-        writer.later(4, 25, text);
+        writer.add_later(4, 25, text);
     }
     let more = 6 + writer.draw.below(20);
     let columns = [

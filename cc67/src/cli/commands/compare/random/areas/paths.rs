@@ -42,11 +42,11 @@ pub(super) fn draw(writer: &mut ScenarioWriter) {
         "CS0_Flushed=1; CoordSystem0=LastCoordSystem0;",
         "CoordSystem0=LastCoordSystem0;",
     ]);
-    writer.later(2, 9, executes);
+    writer.add_later(2, 9, executes);
     let slices = (duration / 180e-6) as u32;
     for _ in 0..writer.draw.below(5) {
         let text = statement(writer, count);
-        writer.later(2, 10 + slices / 3, text);
+        writer.add_later(2, 10 + slices / 3, text);
     }
     let more = 5 + writer.draw.below(slices + 20).min(200);
     let destinations = (0..3).map(|axis| format!("chan[{axis}].Dest"));

@@ -39,7 +39,7 @@ pub(super) fn draw(writer: &mut ScenarioWriter) {
     }
     for _ in 0..writer.draw.below(5) {
         let text = statement(writer);
-        writer.later(4, 40, text);
+        writer.add_later(4, 40, text);
     }
     let more = 8 + writer.draw.below(40);
     let columns =

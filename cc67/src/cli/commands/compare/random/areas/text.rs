@@ -16,7 +16,7 @@ pub(super) fn draw(writer: &mut ScenarioWriter) {
             6 | 7 => scan(&mut writer.draw),
             _ => convert(&mut writer.draw),
         };
-        writer.later(2, 2, text);
+        writer.add_later(2, 2, text);
     }
     // The printed lines are still on their way; nothing else is compared.
     writer.scenario.slices = writer.slice + 8;

@@ -19,11 +19,11 @@ pub(super) fn draw(writer: &mut ScenarioWriter) {
         }
         let counts = format!("persist.UserData[{}]++;", 10 + thread);
         writer.part(PartKind::Slice { thread, slice: 1 + slice }, counts);
-        writer.later(1, 8, format!("StartThread({thread});"));
+        writer.add_later(1, 8, format!("StartThread({thread});"));
     }
     for _ in 0..1 + writer.draw.below(6) {
         let text = statement(writer, 1, count);
-        writer.later(1, 12, text);
+        writer.add_later(1, 12, text);
     }
     let more = 10 + writer.draw.below(30);
     let data = (10..20).map(|index| format!("persist.UserData[{index}]"));
