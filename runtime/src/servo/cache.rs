@@ -47,6 +47,8 @@ pub(crate) struct Cache {
     /// The interrupt's duration on the board, apart from the motion in progress.
     interrupt: Interrupt,
     still: Stillness,
+    /// A bit for each disabled axis that a tick does not change, until something is written or moved from outside.
+    resting: u16,
     /// True if the last tick changed nothing and no thread has run since.
     is_settled: bool,
 }
@@ -60,15 +62,40 @@ impl Cache {
                 self.is_settled = false;
                 self.has_plans = false;
                 self.still.interrupt();
+                self.wake();
             }
-            Invalidation::Memory => self.has_plans = false,
-            Invalidation::Motion => self.still.interrupt(),
+            Invalidation::Memory => {
+                self.has_plans = false;
+                self.wake();
+            }
+            Invalidation::Motion => {
+                self.still.interrupt();
+                self.wake();
+            }
             Invalidation::SwitchedOff => {
                 self.has_plans = false;
                 self.still.interrupt();
+                self.wake();
             }
             Invalidation::Thread => self.is_settled = false,
         }
+    }
+
+    /// Every axis is computed in the next tick.
+    pub(super) const fn wake(&mut self) {
+        self.resting = 0;
+    }
+
+    /// Returns whether a tick of a disabled axis would change nothing.
+    #[inline(always)]
+    pub(super) const fn is_resting(&self, axis: AxisId) -> bool {
+        self.resting >> axis.index() & 1 != 0
+    }
+
+    /// Notes that a tick has not changed a disabled axis, and that nothing but its memory and its load can.
+    #[inline(always)]
+    pub(super) const fn rest(&mut self, axis: AxisId) {
+        self.resting |= 1 << axis.index();
     }
 
     /// Returns the plan of an axis.
@@ -151,7 +178,7 @@ impl Cache {
     /// Ends the tick of the axes; returns whether it has changed anything, which `moved` implies.
     pub(super) fn end(&mut self, memory: &GuestMemory, moved: bool) -> bool {
         if moved {
-            self.invalidate(Invalidation::Motion);
+            self.still.interrupt();
             return true;
         }
         !self.still.end(memory)

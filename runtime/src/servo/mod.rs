@@ -48,7 +48,7 @@ use kmotiondef::{AxisId, Bit};
 use vm::memory::GuestMemory;
 
 use crate::machine::description::Gantry;
-use crate::machine::{RackedGantry, UnitMismatch};
+use crate::machine::{Drive, RackedGantry, UnitMismatch};
 use crate::out::Message;
 use crate::servo::cache::Invalidation;
 use crate::servo::plan::Input;
@@ -74,6 +74,9 @@ pub(crate) fn tick(tick: &mut Tick<'_>, memory: &mut GuestMemory, is_touched: bo
     notice_pushes(tick);
     let has_path = !tick.servo.coordinated.is_idle(memory);
     let is_touched = memory.take_touched() || is_touched;
+    if is_touched {
+        tick.servo.cache.wake();
+    }
     let moved = if has_path || !tick.servo.cache.is_still(memory, is_touched) {
         run_axes(tick, memory)
     } else {
@@ -141,7 +144,11 @@ fn run_axes(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
         changed |= run_together(tick, memory);
     } else {
         for axis in memory.axes().iter() {
-            changed |= run_alone(tick, memory, axis);
+            if !tick.servo.cache.is_resting(axis) {
+                changed |= run_alone(tick, memory, axis);
+            } else if cfg!(debug_assertions) {
+                assert!(!run_alone(tick, memory, axis), "axis {axis} was at rest and has changed");
+            }
         }
     }
     notice_pushes(tick);
@@ -151,7 +158,22 @@ fn run_axes(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
 /// Executes one tick of an axis that depends on no other axis; returns whether anything changed.
 #[inline(never)]
 fn run_alone(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool {
-    advance(tick, memory, axis) | run_axis(tick, memory, axis)
+    let changed = advance(tick, memory, axis) | run_axis(tick, memory, axis);
+    if !changed && memory.axis(axis, Chan::ENABLE) == 0 && depends_on_itself(tick, axis) {
+        tick.servo.cache.rest(axis);
+    }
+    changed
+}
+
+/// Returns whether nothing but the memory and the load of a disabled axis changes its position.
+fn depends_on_itself(tick: &Tick<'_>, axis: AxisId) -> bool {
+    let plant = &tick.machine.loads[axis];
+    let is_own = match &tick.servo.cache.plan(axis).input {
+        Input::None => true,
+        Input::Encoder(encoder) => encoder.turned_by.is_none_or(|other| other == axis),
+        Input::Adc | Input::Resolver => false,
+    };
+    is_own && plant.drive == Drive::None && !plant.has_motor() && tick.machine.wiring.drive(axis).is_none()
 }
 
 /// Executes one tick of all axes, step by step, as each may depend on the others; returns whether anything changed.
