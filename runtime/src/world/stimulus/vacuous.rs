@@ -1,8 +1,9 @@
-//! Expectations of the whole run that cannot fail, because their subject never moves.
+//! Expectations that cannot fail, because their subject never changes.
 //!
 //! The number of an axis or an input is easily mistyped, and such an expectation is then always met. A test may also
 //! intend to check that an axis or an output rests: so there is only a remark for a limit away from rest and, if the
-//! machine has the axis, only if no other statement limits an axis that moves.
+//! machine has the axis, only if no other statement limits an axis that moves. Expectations of a moment are only
+//! examined for bits.
 
 use kmotiondef::bits::BitDirection;
 use kmotiondef::structs::Chan;
@@ -19,7 +20,7 @@ use crate::machine::Channel;
 use crate::views::TypedAccess;
 use crate::world::trace::{Item, View};
 
-/// Something that an expectation of the whole run limits.
+/// The subject of an expectation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LimitedQuantity {
     Axis(AxisId),
@@ -30,13 +31,14 @@ enum LimitedQuantity {
     Bit(Bit),
 }
 
-/// Returns the reason why an expectation of the whole run could not fail, if it could not.
+/// Returns the reason why an expectation could not fail, if it could not.
 pub(super) fn cause(rules: &[Rule], progress: &[Progress], index: usize, view: &View<'_>) -> Option<String> {
     let varied = |index: usize| progress.get(index).is_none_or(Progress::has_varied);
-    if varied(index) {
+    let rule = rules.get(index)?;
+    if varied(index) && is_of_the_run(rule) {
         return None;
     }
-    match limited_quantity(rules.get(index)?, view)? {
+    match limited_quantity(rule, view)? {
         LimitedQuantity::Position(axis)
             if is_used(axis, view) && view.memory.axis(axis, Chan::INPUT_MODE) == 0 =>
         {
@@ -68,18 +70,22 @@ pub(super) fn cause(rules: &[Rule], progress: &[Progress], index: usize, view: &
     }
 }
 
-/// Returns the part of the board that an expectation of the whole run limits.
+/// Returns whether an expectation holds for the whole run.
+const fn is_of_the_run(rule: &Rule) -> bool {
+    matches!(rule.trigger, Trigger::Always { .. })
+}
+
+/// Returns the part of the board that an expectation limits.
 fn limited_quantity(rule: &Rule, view: &View<'_>) -> Option<LimitedQuantity> {
-    let (Trigger::Always { .. }, Action::Expect(Expectation { predicate, .. })) =
-        (&rule.trigger, &rule.action)
-    else {
-        return None;
-    };
+    let Action::Expect(Expectation { predicate, .. }) = &rule.action else { return None };
     let Predicate::Value { subject: Subject::Item(item, _), relation, number, .. } = predicate else {
         return None;
     };
     if let Some(bit) = item.bit() {
         return Some(LimitedQuantity::Bit(bit));
+    }
+    if !is_of_the_run(rule) {
+        return None;
     }
     let is_limit = !matches!(relation, Relation::Equal | Relation::Different) && *number != 0.0;
     is_limit.then(|| of_item(*item, view)).flatten()
@@ -120,6 +126,14 @@ fn idle_bit(bit: Bit, view: &View<'_>) -> Option<String> {
         return Some(format!("nothing is connected to bit {bit}"));
     };
     let pins = &view.io.pins;
-    let is_idle = range.direction == BitDirection::Input && !pins.is_driven(bit) && !pins.is_described(bit);
-    is_idle.then(|| format!("bit {bit} is an input that nothing drives"))
+    if pins.is_driven(bit) || pins.is_described(bit) {
+        return None;
+    }
+    match range.direction {
+        BitDirection::Input => Some(format!("bit {bit} is an input that nothing drives")),
+        BitDirection::Programmable if !pins.is_output(bit) => {
+            Some(format!("bit {bit} is an input that nothing drives: SetBitDirection makes it an output"))
+        }
+        BitDirection::Programmable | BitDirection::Output | BitDirection::Memory => None,
+    }
 }
