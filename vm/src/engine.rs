@@ -45,7 +45,7 @@ pub enum ObservedAccesses {
     /// None.
     #[default]
     None,
-    /// Each access once per slice of a thread, unless the firmware takes it for [redundant](crate::firmware::Repeats).
+    /// Each access once per slice of a thread, unless the firmware takes it for [redundant](crate::firmware::RepeatPolicy).
     Fresh,
     /// All accesses, each also before it is made ([`Firmware::switch_at`]); bytecode is always interpreted then.
     All,

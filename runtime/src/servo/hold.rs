@@ -31,7 +31,7 @@ pub(crate) fn may_stop(memory: &GuestMemory) -> bool {
     HoldState::of(memory) == HoldState::Running && !spindle::is_threading(memory)
 }
 
-/// Computes how long a stop takes, for [`stop`].
+/// Computes how long a stop takes, for [`stop_next`].
 pub(crate) fn prepare_stop(memory: &mut GuestMemory) {
     if may_stop(memory) {
         feedhold::note_time(memory);

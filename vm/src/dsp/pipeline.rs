@@ -256,7 +256,7 @@ impl State {
         self.refuse_second(self.flight.masks[self.slot(1)] & bit(reg));
     }
 
-    /// Schedules a result that lands `delay` cycles from now, at a delay that is [expected](Flight::expect).
+    /// Schedules a result that lands `delay` cycles from now, at a delay that is [expected](super::flight::InFlightEffects::expect).
     #[inline(always)]
     pub(super) fn push(&mut self, delay: u64, reg: u8, value: u32) {
         let slot = self.slot(delay);

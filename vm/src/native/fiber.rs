@@ -1,7 +1,7 @@
 //! A fiber: the native stack on which one context's compiled code runs.
 //!
 //! A fiber is never unwound. It runs until it returns, or it is discarded where it is suspended; the only Rust frames
-//! on it are the body below and [`leave`](super::entry::leave), and neither owns anything. So a suspended fiber can
+//! on it are the body below and `leave` in `entry.rs`, and neither owns anything. So a suspended fiber can
 //! also be copied: the bytes on its stack and the state, which are restored to the same addresses before the copy
 //! continues.
 #![expect(unsafe_code, reason = "runs compiled code and discards fibers without unwinding them")]

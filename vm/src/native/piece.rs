@@ -5,7 +5,7 @@ use kmotiondef::map::{IRAM, SDRAM};
 /// The limit of values that are passed besides registers.
 pub(crate) const VALUES: usize = 128;
 
-/// The bytes of RAM covered by one [mark](Handover::marks), as a power of two.
+/// The bytes of RAM covered by one [mark](Places::marks), as a power of two.
 pub(crate) const MARK_BITS: u32 = 5;
 
 /// Lines of both RAMs.

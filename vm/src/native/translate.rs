@@ -123,7 +123,7 @@ pub(super) fn thunk_signature() -> Signature {
     function_signature(&[])
 }
 
-/// The machine signature of [`RequestFn`](super::entry::RequestFn).
+/// The machine signature of [`RequestFn`](super::state::RequestFn).
 fn leave_signature(convention: CallConv) -> Signature {
     let mut signature = Signature::new(convention);
     let parameters = [types::I64, types::I32, types::I32, types::I32, types::I64, types::I64];

@@ -1,4 +1,4 @@
-//! The actions of a stimulus, performed by a person and the PC; see [`Bench`].
+//! The actions of a stimulus, performed by a person and the PC; see [`Bench`](crate::bench::Bench).
 
 use std::mem;
 

@@ -1,7 +1,7 @@
 //! Several iterations of a loop at once: the budget is tested at their start, addresses at their first use.
 //!
 //! [`unroll`](super::unroll) selects the loops and collects the facts that hold in them. Here their words are translated
-//! once for each iteration, by the same methods as elsewhere; the few methods that differ test [`Translator::fast`].
+//! once for each iteration, by the same methods as elsewhere; the few methods that differ test `unroll.fast`.
 //! After the fast iterations comes the ordinary loop, for the cases that they cannot handle and for the last iterations
 //! of a slice.
 
