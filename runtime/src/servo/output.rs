@@ -76,10 +76,10 @@ fn drive_otherwise(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, 
             Drive::Steps(command)
         }
         Some(OutputMode::DacServo) => {
-            let applied = AmplifierSignal::Dac(f64::from(analog(&chan, output)));
+            let (value, channel) = (analog(&chan, output), chan.get(Chan::OUTPUT_CHAN0));
             note_overwritten(tick, memory, axis);
-            tick.servo.axes[axis.index()].analog = write_dac(memory, axis, output);
-            Drive::Loop(command, applied)
+            tick.servo.axes[axis.index()].analog = write_dac(memory, channel, value);
+            Drive::Loop(command, AmplifierSignal::Dac(f64::from(value)))
         }
         Some(mode @ (OutputMode::Brushless3Ph | OutputMode::Brushless4Ph)) => {
             let applied = turn(tick, memory, axis, mode, output);
@@ -179,10 +179,16 @@ fn analog(chan: &AxisView<'_>, output: f32) -> i32 {
     (value.wrapping_add(2048) & 0xfff) - 2048
 }
 
-/// Writes it, and returns which output has got which word.
-pub(super) fn write_dac(memory: &mut GuestMemory, axis: AxisId, output: f32) -> Option<(usize, i16)> {
+/// Sets the analog output of an axis whose compensation has an output of 0.
+pub(super) fn clear_dac(memory: &mut GuestMemory, axis: AxisId) {
     let chan = AxisView::of(memory, axis);
-    let (value, channel) = (analog(&chan, output), chan.get(Chan::OUTPUT_CHAN0));
+    let (value, channel) = (analog(&chan, 0.0), chan.get(Chan::OUTPUT_CHAN0));
+    write_dac(memory, channel, value);
+}
+
+/// Writes a value to an analog output, and returns which one has got which word.
+#[inline]
+fn write_dac(memory: &mut GuestMemory, channel: i32, value: i32) -> Option<(usize, i16)> {
     let channel = usize::try_from(channel).ok().filter(|&channel| channel < DACS)?;
     let word = (value.wrapping_sub(2048) & 0xfff) as i16;
     memory.set(DAC_BUFFER.element(channel), word);
@@ -190,11 +196,17 @@ pub(super) fn write_dac(memory: &mut GuestMemory, axis: AxisId, output: f32) -> 
 }
 
 /// Makes a remark on an analog output that was written since the axis wrote it, unless another axis has done so.
+#[inline]
 fn note_overwritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId) {
-    let Some((dac, word)) = tick.servo.axes[axis.index()].analog else { return };
-    if memory.get(DAC_BUFFER.element(dac)) == word {
-        return;
+    if let Some((dac, word)) = tick.servo.axes[axis.index()].analog
+        && memory.get(DAC_BUFFER.element(dac)) != word
+    {
+        report_overwritten(tick, memory, axis, dac);
     }
+}
+
+#[cold]
+fn report_overwritten(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, dac: usize) {
     let drives = |other: AxisId| {
         memory.axis(other, Chan::ENABLE) != 0 && channel_of(memory, other) == Some(Channel::Dac(dac))
     };

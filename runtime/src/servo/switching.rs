@@ -6,7 +6,7 @@ use kmotiondef::{AxisId, GuestAddr};
 use vm::memory::GuestMemory;
 
 use super::cache::Invalidation;
-use super::output::write_dac;
+use super::output::clear_dac;
 use super::state::{AxisMemory, Servo};
 use crate::io::amplifiers::{recirculate, store_pwm};
 use crate::machine::{Drive, Machine};
@@ -108,7 +108,7 @@ fn output_nothing(memory: &mut GuestMemory, axis: AxisId) {
         RestOutputs::Both => stop(&channels),
         RestOutputs::FirstAndNext => stop(&[channels[0], channels[0].wrapping_add(1)]),
         RestOutputs::Analog => {
-            write_dac(memory, axis, 0.0);
+            clear_dac(memory, axis);
         }
     }
 }
