@@ -63,7 +63,7 @@ pub(crate) struct BoardArguments {
     /// twice, values read half old, locks in opposite orders; programs are interpreted
     #[arg(long)]
     pub(crate) races: bool,
-    /// Run by a schedule of `cc67 test --schedules`: a seed, or its parts (start2+7,switch57); as with --as board and --races
+    /// Run under a schedule of `cc67 test --schedules`: a seed, or its parts (start2+7,switch57); implies --as board and --races
     #[arg(long, value_name = "SEED")]
     pub(crate) schedule: Option<Schedule>,
     /// Switch a remark off (`-R no-CODE`) or on again (`-R CODE`); `cc67 explain remarks` lists the codes
@@ -136,7 +136,7 @@ impl BoardArguments {
         self.engine.unwrap_or_default()
     }
 
-    /// Returns how close to the board the run is.
+    /// Returns how faithfully the run models the board.
     pub(crate) fn form(&self) -> RunForm {
         if self.schedule.is_some() { RunForm::Board } else { self.form }
     }

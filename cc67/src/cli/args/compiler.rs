@@ -44,7 +44,7 @@ pub(crate) struct SourceArguments {
     /// Show no warnings
     #[arg(short = 'w')]
     silent: bool,
-    /// C standard that decides the types of constants (c90, c99, c11, c17), or the vendor's rules; the dialect stays
+    /// C standard that decides the types of constants (c90, c99, c11, c17), or the vendor's rules; the accepted language is the same
     #[arg(long, value_name = "STANDARD", default_value = "vendor", value_parser = standard)]
     std: Standard,
     /// Format of errors and warnings
@@ -73,7 +73,7 @@ pub(crate) struct CompilerArguments {
     /// Code whose execution time the board counts
     #[arg(long, value_name = "CODE", value_enum, default_value_t, help_heading = heading::EXPERTS)]
     timing: TimedCode,
-    /// Memory waits of the processor: none, io44 (44 cycles for a register access; the default but with --boot), io44_sd20
+    /// Memory waits of the processor: none, io44 (44 cycles for a register access; the default except with --boot), io44_sd20
     /// (also 20 for 32 bits of SDRAM), or a number of cycles for SDRAM
     #[arg(long, value_name = "WAITS", value_parser = wait_states, help_heading = heading::EXPERTS)]
     wait_states: Option<WaitStates>,

@@ -15,7 +15,7 @@ pub(crate) enum EngineName {
     Bytecode,
     /// Translate to machine code of this computer; the default where that is possible
     Native,
-    /// Execute code for the controller's processor in its true cycles; sources are compiled for it
+    /// Execute code of the controller's processor cycle by cycle; sources are compiled for that processor
     Dsp,
 }
 

@@ -46,7 +46,7 @@ pub(super) struct InspectArguments {
     /// Show the calls between functions
     #[arg(long)]
     calls: bool,
-    /// Show the stack of each function and the worst chain of calls
+    /// Show the stack usage of each function and the chain of calls that needs most
     #[arg(long)]
     stack: bool,
     /// Show everything
@@ -64,7 +64,7 @@ enum OrderName {
     Address,
     /// The largest first
     Size,
-    /// By alphabet
+    /// Alphabetically
     Name,
 }
 

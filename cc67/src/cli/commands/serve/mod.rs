@@ -76,11 +76,12 @@ pub(super) struct ServeArguments {
     #[arg(value_name = "[N:]FILE")]
     programs: Vec<OsString>,
     /// Listen on this socket, port or Windows pipe; may be repeated [default: /tmp/kmotionsocket and tcp:57777, on
-    /// Windows pipe and tcp:57777, like the vendor's server]. With pty or tcp-raw:PORT, one client has the board's own
-    /// byte protocol, as at its USB port
+    /// Windows pipe and tcp:57777, like the vendor's server]. With pty or tcp-raw:PORT, one client speaks the board's
+    /// own byte protocol, as over USB
     #[arg(long, value_name = "PATH|pipe[:NAME]|tcp:PORT|pty|tcp-raw:PORT")]
     listen: Vec<String>,
-    /// Serve several boards: `--board NAME=MACHINE.toml` for each, at the locations 1, 2, … in this order
+    /// Serve this board, too; repeat it for several, at the locations 1, 2, … in this order. `--board NAME=MACHINE.toml`
+    /// is the same
     #[arg(long, value_name = "NAME=MACHINE.toml", value_parser = BoardFile::parse)]
     serves: Vec<BoardFile>,
     /// Speed of board time: 1 is real time, N is N times as fast; with `fast`, time passes only while a client waits
