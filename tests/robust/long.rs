@@ -79,7 +79,7 @@ const SERVICES: [(&str, &str); 3] = [
     ),
 ];
 
-/// A conversation with a console: a line, and the line that it answers.
+/// A conversation with a console: each line that is sent gets one line as its reply.
 struct Conversation {
     child: Child,
     answers: BufReader<ChildStdout>,

@@ -423,8 +423,8 @@ pub trait Firmware: Bus {
         RepeatPolicy::Reported
     }
 
-    /// Returns whether a call or an access since the last query has changed the order of accesses: all of them are then
-    /// reported again.
+    /// Returns whether a call or an access since the last query has ordered accesses of different threads: the engine must
+    /// then report all accesses again.
     fn take_ordering(&mut self) -> bool {
         false
     }

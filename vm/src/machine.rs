@@ -97,7 +97,7 @@ pub struct Machine<F, E = BytecodeEngine> {
 struct Window {
     start: Cycles,
     end: Cycles,
-    /// The cycles of it that the call-back took.
+    /// How many cycles of the tick the call-back took.
     callback: Cycles,
 }
 

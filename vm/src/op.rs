@@ -510,7 +510,7 @@ impl Packer {
     }
 }
 
-/// Takes operands from after an opcode.
+/// Reads the operands that follow an opcode.
 struct Unpacker {
     word: [u8; WORD],
     at: usize,

@@ -1,5 +1,4 @@
-//! The speed of the processor's interpreter: millions of cycles and packets per second of the computer's processor
-//! time.
+//! The speed of the interpreter of the DSP: millions of cycles and packets per second of the host's CPU time.
 //!
 //! `kernel/integer`, `kernel/memory` and `kernel/double` are the hand-written loops of `c67x.md` 7; those named `cc67`
 //! are the compiler's output for the same loops; `translated` runs them as host code. Goals: 150 million cycles per

@@ -687,7 +687,7 @@ messages! {
     /// A line of a file is written in parts.
     LineInParts { } = "line-in-parts", Warning, [once],
         "fprintf: the line before is unfinished; as on the board, a stray character 2 precedes this text, and a line begun by printf goes to the console. Write each line with one call";
-    /// A text for a file contains a percent sign.
+    /// A text printed to a file contains a percent sign, which is formatted a second time.
     PercentTwice { } = "percent-twice", Warning, [once],
         "fprintf: the text contains a %, which the board reads as a conversion again. Write %%%% for it";
     /// The PC refuses to write a file.

@@ -1,4 +1,4 @@
-//! Programs: sizes, locks, library functions, names that link; and the derivative of the compensation.
+//! Programs on firmware 5: sizes, locks, library functions, symbols that resolve, the derivative gain of an axis.
 
 use serde_json::Value as Json;
 

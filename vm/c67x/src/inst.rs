@@ -139,7 +139,7 @@ impl Inst {
         Self { op: Op::Nop, word: (cycles.clamp(1, 9) - 1) << Field::N.lowest_bit() }
     }
 
-    /// The form.
+    /// The operation, with the form of its operands.
     #[must_use]
     pub const fn op(self) -> Op {
         self.op

@@ -217,7 +217,7 @@ pub enum Timing {
     Single,
     /// Products of 16 bits.
     Product,
-    /// Singles and conversions to 32 bits.
+    /// Instructions of four cycles: single-precision arithmetic and conversions to 32-bit results.
     Four,
     /// Integers to doubles.
     Widening,

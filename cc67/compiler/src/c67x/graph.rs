@@ -17,8 +17,8 @@ use super::step::{Access, Step};
 pub(super) struct Edge {
     pub(super) to: u32,
     pub(super) cycles: u8,
-    /// The number of cycles if no interrupt can come between the two: lower if the result of `to` may be in flight when
-    /// `from` reads its register.
+    /// The minimum distance in cycles where interrupts are disabled between `from` and `to`: less than `cycles` if the
+    /// result of `to` may still be in flight when `from` reads the register.
     pub(super) sheltered: i8,
 }
 

@@ -39,7 +39,7 @@ pub(crate) struct Wait {
     pub(crate) since: Cycles,
     /// When it last polled anything.
     pub(crate) looked: Cycles,
-    /// A measure of the frequency of polling; polling the time has the lowest weight.
+    /// How often the thread has polled, weighted by what it polls: polling the time counts least.
     pub(crate) looks: u32,
     /// True if it has read a bit since its last other action; and if it had before that.
     reads: bool,

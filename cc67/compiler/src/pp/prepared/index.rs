@@ -116,7 +116,7 @@ pub(super) struct Piece {
     pub(super) end: usize,
 }
 
-/// The start of a header.
+/// The positions in the first entry of a prepared header.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeadPlaces {
     /// The text that includes it, and the range of the name there with its quotes; of no meaning for the first.

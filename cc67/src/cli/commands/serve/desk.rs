@@ -277,7 +277,7 @@ impl<'a, T: Target> Dispatcher<'a, T> {
         DispatchFlow::Continue
     }
 
-    /// Handles a message about the only client of the link.
+    /// Handles a message from the board's own link, which has exactly one client.
     fn wire(&mut self, note: DispatcherMessage) -> DispatchFlow {
         let Some(wire) = &mut self.board.wire else { return DispatchFlow::Continue };
         match note {
